@@ -1,0 +1,51 @@
+# What a person types. Each target sets up what it needs; nothing has to be activated.
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+SOURCES := pyproject.toml setup.py $(wildcard libvox/*.c libvox/*.h libvox/*.py libvox/include/*.h)
+
+.PHONY: run test lint types imports unit sanitize clean
+
+## run: the published experiment
+run: $(VENV)/installed
+	$(BIN)/evoframe run
+
+## test: everything that CI checks
+test: lint types imports unit sanitize
+
+## lint: style of the Python code
+lint: $(VENV)/developing
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+## types: mypy --strict
+types: $(VENV)/developing
+	$(BIN)/mypy
+
+## imports: who may import whom
+imports: $(VENV)/developing
+	$(BIN)/lint-imports
+
+## unit: the tests
+unit: $(VENV)/developing
+	$(BIN)/python -m pytest
+
+## sanitize: libvox and its tests under the address and undefined-behaviour sanitizers
+sanitize: $(VENV)/developing
+	PYTHON=$(BIN)/python libvox/sanitize.sh
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info libvox/evoframe_libvox/_vox.*
+
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
+
+$(VENV)/installed: $(BIN)/python $(SOURCES)
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/developing: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --group dev
+	touch $@

@@ -1,0 +1,185 @@
+/* The bond law: a beam between two voxels, in one of two frames, with a damper (sections 5 and 6). */
+#include "internal.h"
+
+/* Limits of the frames; a bond leaves the small frame later than it returns to it. */
+static const double SMALL_COSINE = 0.9999625024343469; /* cos(0.01732 / 2) */
+static const double LARGE_COSINE = 0.9999546280051071; /* cos(1.1 * 0.01732 / 2) */
+static const double SMALL_TURN = 0.05, LARGE_TURN = 0.055;
+static const double SMALL_EXTENSION = 1.30, LARGE_EXTENSION = 1.43;
+
+static const double SLOPE_OF_SMALL_TURN = 0.01732;
+static const double COSINE_OF_SMALL_ROTATION = 0.9988;
+static const double MOST_STRAIN = 100.0;
+
+/* A vector seen in axes of which the bond's own is the first, and back. */
+static struct vec axis_to_x(enum axis axis, struct vec v)
+{
+    switch (axis) {
+    case AXIS_X: return v;
+    case AXIS_Y: return (struct vec){v.y, -v.x, v.z};
+    case AXIS_Z: break;
+    }
+    return (struct vec){v.z, v.y, -v.x};
+}
+
+static struct vec x_to_axis(enum axis axis, struct vec v)
+{
+    switch (axis) {
+    case AXIS_X: return v;
+    case AXIS_Y: return (struct vec){-v.y, v.x, v.z};
+    case AXIS_Z: break;
+    }
+    return (struct vec){-v.z, v.y, v.x};
+}
+
+/* Rotation vector of a rotation. The engine's formulas: within 4 degrees the arc counts as its chord. */
+static struct vec rotation_vector(struct quat q)
+{
+    const double w = q.w > 1.0 ? 1.0 : q.w;
+    const double sine2 = 1.0 - w * w;
+    if (sine2 <= 0.0) return (struct vec){0.0, 0.0, 0.0}; /* a NaN goes on, to be found */
+    const double k = w > COSINE_OF_SMALL_ROTATION ? 2.0 * sqrt((2.0 - 2.0 * w) / sine2) : 2.0 * acos(w) / sqrt(sine2);
+    return vec_scale(k, (struct vec){q.x, q.y, q.z});
+}
+
+/* The rotation that takes a direction onto +x. The small-angle form is not quite a unit quaternion, and a bond turned
+ * inside out, close to -x, takes it too: both as in the engine. */
+static struct quat rotation_onto_x(struct vec u, double length)
+{
+    if (fabs(u.y / u.x) < SLOPE_OF_SMALL_TURN && fabs(u.z / u.x) < SLOPE_OF_SMALL_TURN) {
+        const double y = 0.5 * u.z / u.x, z = -0.5 * u.y / u.x;
+        return (struct quat){1.0 - 0.5 * (y * y + z * z), 0.0, y, z};
+    }
+    const double cosine = u.x / length;
+    const double across = sqrt(u.y * u.y + u.z * u.z);
+    const double half_sine = sqrt(0.5 * (1.0 - cosine)), half_cosine = sqrt(0.5 * (1.0 + cosine));
+    return (struct quat){half_cosine, 0.0, half_sine * u.z / across, -half_sine * u.y / across};
+}
+
+static bool next_frame_is_small(bool small, double turn_cosine, struct vec u, double rest)
+{
+    const double turn = (fabs(u.y) + fabs(u.z)) / u.x, extension = u.x / rest;
+    if (small) return !(turn_cosine <= LARGE_COSINE || turn > LARGE_TURN || extension > LARGE_EXTENSION);
+    return turn_cosine > SMALL_COSINE && turn < SMALL_TURN && extension < SMALL_EXTENSION;
+}
+
+/* How a bond is deformed, or how fast: of its upper end against its lower, and the rotation of both ends. */
+struct deformation {
+    struct vec stretch, turn_lower, turn_upper;
+};
+
+/* Force on the lower end (the upper gets its opposite) and moments of both ends, in the bond's frame. */
+struct wrench {
+    struct vec force_lower, force_upper, moment_lower, moment_upper;
+};
+
+static struct deformation rate_of(struct deformation now, const struct bond *bond, double per_second)
+{
+    return (struct deformation){
+        vec_scale(per_second, vec_sub(now.stretch, bond->stretch)),
+        vec_scale(per_second, vec_sub(now.turn_lower, bond->turn_lower)),
+        vec_scale(per_second, vec_sub(now.turn_upper, bond->turn_upper)),
+    };
+}
+
+static struct wrench spring(const struct coupling *c, struct deformation d)
+{
+    const struct vec p = d.stretch, a = d.turn_lower, b = d.turn_upper;
+    const struct vec force = {
+        c->stretch * p.x,
+        c->shear * p.y - c->bend_shear * (a.z + b.z),
+        c->shear * p.z + c->bend_shear * (a.y + b.y),
+    };
+    const double twist = c->twist * (a.x - b.x), lift = c->bend_shear * p.z, side = c->bend_shear * p.y;
+    return (struct wrench){
+        .force_lower = force,
+        .force_upper = vec_scale(-1.0, force),
+        .moment_lower = {twist, lift + c->bend * (2.0 * a.y + b.y), -side + c->bend * (2.0 * a.z + b.z)},
+        .moment_upper = {-twist, lift + c->bend * (a.y + 2.0 * b.y), -side + c->bend * (a.z + 2.0 * b.z)},
+    };
+}
+
+/* Each end is damped with its own constants. */
+static struct vec damping_force(const struct damper *c, struct deformation rate)
+{
+    const struct vec v = rate.stretch, a = rate.turn_lower, b = rate.turn_upper;
+    return (struct vec){
+        c->stretch * v.x,
+        c->shear * v.y - c->bend_shear * (a.z + b.z),
+        c->shear * v.z + c->bend_shear * (a.y + b.y),
+    };
+}
+
+/* Moment on the end that turns at `own` while the other turns at `other`. */
+static struct vec damping_moment(const struct damper *c, struct vec v, struct vec own, struct vec other)
+{
+    return (struct vec){
+        c->twist * (own.x - other.x),
+        c->moment_shear * v.z + c->bend * (2.0 * own.y + other.y),
+        -c->moment_shear * v.y + c->bend * (2.0 * own.z + other.z),
+    };
+}
+
+static void add_damping(struct wrench *wrench, const struct coupling *c, struct deformation rate)
+{
+    const struct vec v = rate.stretch, a = rate.turn_lower, b = rate.turn_upper;
+    wrench->force_lower = vec_add(wrench->force_lower, damping_force(&c->lower, rate));
+    wrench->force_upper = vec_sub(wrench->force_upper, damping_force(&c->upper, rate));
+    wrench->moment_lower = vec_add(wrench->moment_lower, damping_moment(&c->lower, v, a, b));
+    wrench->moment_upper = vec_add(wrench->moment_upper, damping_moment(&c->upper, v, b, a));
+}
+
+/* Adds one end's force and moment, given in the bond's frame, to a voxel. */
+static inline void load(struct voxel *voxel, enum axis axis, struct quat frame, struct vec force, struct vec moment)
+{
+    voxel->force = vec_add(voxel->force, quat_rotate(frame, x_to_axis(axis, force)));
+    voxel->torque = vec_sub(voxel->torque, quat_rotate(frame, x_to_axis(axis, moment)));
+}
+
+static bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels, double edge, double per_second)
+{
+    struct voxel *lower = &voxels[bond->lower], *upper = &voxels[bond->upper];
+    const enum axis axis = bond->axis;
+    const double rest = 0.5 * (lower->size + upper->size);
+    const struct quat back = quat_conj(lower->orientation);
+    const struct vec u = axis_to_x(axis, quat_rotate(back, vec_sub(upper->position, lower->position)));
+    const struct quat turn = quat_mul(back, upper->orientation);
+    const struct vec turn_axis = axis_to_x(axis, (struct vec){turn.x, turn.y, turn.z});
+    const struct quat relative = {turn.w, turn_axis.x, turn_axis.y, turn_axis.z};
+
+    const bool small = next_frame_is_small(bond->small, relative.w, u, rest);
+    const bool same_frame = small == bond->small;
+    struct deformation now;
+    struct quat frame; /* takes the bond's frame, in the world's axes, to the world */
+    if (small) {
+        now = (struct deformation){{u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
+        frame = lower->orientation;
+    } else {
+        const double length = sqrt(vec_dot(u, u));
+        const struct quat onto_x = rotation_onto_x(u, length);
+        const struct vec straighten = x_to_axis(axis, (struct vec){onto_x.x, onto_x.y, onto_x.z});
+        now = (struct deformation){
+            {length - rest, 0.0, 0.0}, rotation_vector(onto_x), rotation_vector(quat_mul(onto_x, relative))};
+        frame = quat_mul(lower->orientation, (struct quat){onto_x.w, -straighten.x, -straighten.y, -straighten.z});
+    }
+
+    struct wrench wrench = spring(bond->coupling, now);
+    if (same_frame) { /* a change of frame leaves the history as it is, and the next step takes its rates from it */
+        add_damping(&wrench, bond->coupling, rate_of(now, bond, per_second));
+        bond->stretch = now.stretch;
+        bond->turn_lower = now.turn_lower;
+        bond->turn_upper = now.turn_upper;
+    }
+    bond->small = small;
+    load(lower, axis, frame, wrench.force_lower, wrench.moment_lower);
+    load(upper, axis, frame, wrench.force_upper, wrench.moment_upper);
+    return now.stretch.x <= MOST_STRAIN * edge; /* false for a NaN */
+}
+
+bool bonds_apply(struct body *body, double per_second)
+{
+    bool fine = true;
+    for (int64_t i = 0; i < body->census.n_bonds; i++)
+        fine &= bond_apply(&body->bonds[i], body->voxels, body->model->settings.voxel_size, per_second);
+    return fine;
+}

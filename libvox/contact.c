@@ -1,0 +1,213 @@
+/* Self collision: which voxels may touch, and how they repel each other (section 10). */
+#include <stdlib.h>
+
+#include "internal.h"
+
+static const double REACH = 0.75;             /* a voxel's envelope is this many of its sizes in radius */
+static const int64_t CONTACTS_PER_VOXEL = 256;
+
+static bool on_surface(const int32_t bonded[6])
+{
+    for (int side = 0; side < 6; side++)
+        if (bonded[side] < 0) return true;
+    return false;
+}
+
+static double coordinate(struct vec v, enum axis axis)
+{
+    switch (axis) {
+    case AXIS_X: return v.x;
+    case AXIS_Y: return v.y;
+    case AXIS_Z: break;
+    }
+    return v.z;
+}
+
+static int hops_left_out(const struct vox_settings *s)
+{
+    return (int)(s->collision_list_factor * s->collision_horizon);
+}
+
+/* Most voxels within so many bonds of one, itself included: the points of an octahedron on the lattice. */
+static int64_t most_near(int hops)
+{
+    const int64_t h = hops;
+    return (2 * h + 1) * (2 * h * h + 2 * h + 3) / 3;
+}
+
+/* Writes the voxels within `hops` bonds of one, itself first, and returns how many there are. What it writes is also
+ * the queue of its breadth-first search. */
+static int64_t gather_near(const struct body *body, int32_t voxel, int hops, int32_t *near)
+{
+    int32_t *stamp = body->contacts.stamp;
+    int64_t begin = 0, n = 0;
+    near[n++] = voxel;
+    stamp[voxel] = voxel;
+    for (int hop = 0; hop < hops; hop++) {
+        const int64_t end = n;
+        for (; begin < end; begin++) {
+            const int32_t *bonded = body->bonded[near[begin]];
+            for (int side = 0; side < 6; side++) {
+                if (bonded[side] < 0 || stamp[bonded[side]] == voxel) continue;
+                stamp[bonded[side]] = voxel;
+                near[n++] = bonded[side];
+            }
+        }
+    }
+    return n;
+}
+
+/* Cells in an order in which the longest axis is the slowest, so that the skin starts sorted along it. */
+static int64_t nth_cell(const struct vox_settings *s, enum axis longest, int64_t n)
+{
+    switch (longest) {
+    case AXIS_X: return n / (s->ny * s->nz) + s->nx * (n % (s->ny * s->nz));
+    case AXIS_Y: return n % s->nx + s->nx * (n / (s->nx * s->nz) + s->ny * (n / s->nx % s->nz));
+    case AXIS_Z: break;
+    }
+    return n;
+}
+
+static enum axis longest_axis(const struct vox_settings *s)
+{
+    if (s->nx >= s->ny && s->nx >= s->nz) return AXIS_X;
+    return s->ny >= s->nz ? AXIS_Y : AXIS_Z;
+}
+
+static int64_t count_surface(const struct body *body)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < body->census.n_voxels; i++) n += on_surface(body->bonded[i]);
+    return n;
+}
+
+static void place_skin(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    const struct vox_settings *settings = &body->model->settings;
+    const int hops = hops_left_out(settings);
+    int64_t n = 0, n_near = 0;
+    for (int64_t i = 0; i < body->census.n_voxels; i++) contacts->stamp[i] = -1;
+    for (int64_t i = 0; i < body->model->cells; i++) {
+        const int32_t voxel = body->voxel_in[nth_cell(settings, contacts->longest, i)];
+        if (voxel < 0 || !on_surface(body->bonded[voxel])) continue;
+        const int64_t begin = n_near;
+        n_near += gather_near(body, voxel, hops, contacts->near + n_near);
+        contacts->skin[n++] = (struct skin){.voxel = voxel, .near_begin = begin, .near_end = n_near};
+    }
+}
+
+enum vox_status contacts_create(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    const int64_t n_voxels = body->census.n_voxels, n_skin = count_surface(body);
+    const int64_t near_each = most_near(hops_left_out(&body->model->settings));
+    const int64_t pairs = n_skin * (n_skin - 1) / 2, most = CONTACTS_PER_VOXEL * n_skin;
+    contacts->longest = longest_axis(&body->model->settings);
+    contacts->n_skin = n_skin;
+    contacts->capacity = pairs < most ? pairs : most;
+    contacts->skin = malloc((size_t)(n_skin + 1) * sizeof *contacts->skin);
+    contacts->near = malloc((size_t)(n_skin * (near_each < n_voxels ? near_each : n_voxels) + 1) * sizeof *contacts->near);
+    contacts->stamp = malloc((size_t)n_voxels * sizeof *contacts->stamp);
+    contacts->list = malloc((size_t)(contacts->capacity + 1) * sizeof *contacts->list);
+    if (!contacts->skin || !contacts->near || !contacts->stamp || !contacts->list) return VOX_NO_MEMORY;
+    place_skin(body);
+    return VOX_OK;
+}
+
+void contacts_destroy(struct contacts *contacts)
+{
+    free(contacts->skin);
+    free(contacts->near);
+    free(contacts->stamp);
+    free(contacts->list);
+}
+
+/* By insertion: the order of one time is nearly that of the next. */
+static void sort_skin(struct body *body)
+{
+    struct skin *skin = body->contacts.skin;
+    for (int64_t i = 0; i < body->contacts.n_skin; i++) {
+        struct skin one = skin[i];
+        one.along = coordinate(body->voxels[one.voxel].position, body->contacts.longest);
+        int64_t j = i;
+        for (; j > 0 && skin[j - 1].along > one.along; j--) skin[j] = skin[j - 1];
+        skin[j] = one;
+    }
+}
+
+static double largest_size(const struct body *body)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < body->contacts.n_skin; i++)
+        largest = fmax(largest, body->voxels[body->contacts.skin[i].voxel].size);
+    return largest;
+}
+
+/* Whether two voxels are close enough to be listed. The reach is that of the first; voxels exactly at it are out. */
+static bool close_enough(const struct voxel *first, double distance, const struct vox_settings *s)
+{
+    const double most = s->collision_list_factor * s->collision_horizon * s->voxel_size;
+    return distance < s->collision_horizon * first->size && distance < most;
+}
+
+/* False if the list is full. */
+static bool list_contact(struct body *body, int32_t one, int32_t other, double distance)
+{
+    struct contacts *contacts = &body->contacts;
+    const int32_t first = one < other ? one : other, second = one < other ? other : one;
+    const struct voxel *a = &body->voxels[first], *b = &body->voxels[second];
+    if ((a->clamped && b->clamped) || !close_enough(a, distance, &body->model->settings)) return true;
+    if (contacts->n == contacts->capacity) return false;
+    const double stiffness = coupling_of(body->model, a->substance, b->substance)->stretch;
+    contacts->list[contacts->n++] = (struct contact){first, second, stiffness};
+    return true;
+}
+
+/* All pairs whose distance along the longest axis does not already part them. */
+static bool list_contacts(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    const double reach = body->model->settings.collision_horizon * largest_size(body);
+    int32_t *stamp = contacts->stamp;
+    contacts->n = 0;
+    sort_skin(body);
+    for (int64_t i = 0; i < contacts->n_skin; i++) {
+        const struct skin *one = &contacts->skin[i];
+        const struct vec position = body->voxels[one->voxel].position;
+        for (int64_t k = one->near_begin; k < one->near_end; k++) stamp[contacts->near[k]] = one->voxel;
+        for (int64_t j = i + 1; j < contacts->n_skin && contacts->skin[j].along - one->along < reach; j++) {
+            const int32_t other = contacts->skin[j].voxel;
+            const struct vec apart = vec_sub(body->voxels[other].position, position);
+            const double distance2 = vec_dot(apart, apart);
+            if (distance2 >= reach * reach || stamp[other] == one->voxel) continue;
+            if (!list_contact(body, one->voxel, other, sqrt(distance2))) return false;
+        }
+    }
+    return true;
+}
+
+bool contacts_refresh(struct body *body, bool first_step)
+{
+    const struct vox_settings *settings = &body->model->settings;
+    struct contacts *contacts = &body->contacts;
+    contacts->travelled += body->top_speed * body->census.dt / settings->voxel_size;
+    if (!first_step && contacts->travelled <= (settings->collision_horizon - 1.0) / 2.0) return true;
+    contacts->travelled = 0.0;
+    return list_contacts(body);
+}
+
+void contacts_apply(struct body *body)
+{
+    for (int64_t i = 0; i < body->contacts.n; i++) {
+        const struct contact *contact = &body->contacts.list[i];
+        struct voxel *first = &body->voxels[contact->first], *second = &body->voxels[contact->second];
+        const struct vec apart = vec_sub(second->position, first->position);
+        const double distance2 = vec_dot(apart, apart), reach = REACH * (first->size + second->size);
+        if (!(distance2 < reach * reach && distance2 > 0.0)) continue;
+        const double distance = sqrt(distance2);
+        const struct vec push = vec_scale(contact->stiffness * (reach - distance) / distance, apart);
+        first->force = vec_sub(first->force, push);
+        second->force = vec_add(second->force, push);
+    }
+}

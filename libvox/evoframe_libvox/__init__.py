@@ -1,0 +1,269 @@
+"""The voxel solver from Python: NumPy arrays in, NumPy arrays out.
+
+Arrays over a canvas are indexed ``[x, y, z]``. Units are metre, second, kilogram, pascal and degree; phases
+are in cycles. The solver itself is the C library in ``libvox/``: it checks the values of all arguments,
+releases the GIL while it works, and keeps no state, so threads may share a model.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, Literal
+
+import attrs
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from evoframe_libvox._vox import ffi, lib
+
+__all__ = ["KERNEL", "Material", "Model", "Result", "Settings", "Track"]
+
+KERNEL: Final = "scalar"
+"""Name of the implementation that computes, to be recorded with its results."""
+
+Track = Literal["tip", "face", "body", "voxels"]
+
+
+@attrs.frozen
+class Material:
+    """What a voxel is made of.
+
+    Attributes:
+        youngs_modulus: Pa; positive.
+        poisson_ratio: At least 0, below 0.5. It acts on the twist of bonds only.
+        density: kg/m3; positive.
+        expansion: Linear thermal expansion per degree; 0 for a passive material, negative for one that
+            contracts when the others expand.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    expansion: float
+
+
+@attrs.frozen(kw_only=True)
+class Settings:
+    """How bodies are simulated.
+
+    Attributes:
+        voxel_size: Edge of the lattice, m.
+        duration: Simulated time, s.
+        temperature_amplitude: Degrees, the base temperature already subtracted. A voxel's linear strain is
+            ``expansion * temperature_amplitude * sin(2 pi (t / period + phase))``.
+        period: Of the actuation, s.
+        time_step_fraction: Of the largest stable time step; above 0, at most 1.
+        bond_damping: Damping of bonds, as a fraction of critical.
+        slow_damping: Damping against the ground, as a fraction of critical.
+        self_collision: Whether the voxels of a body repel each other.
+        collision_horizon: Reach of the list of possible contacts, in voxel sizes; 1 to 4. The list is made
+            anew when the fastest voxel may have moved by more than ``(horizon - 1) / 2`` lattice edges.
+        collision_list_factor: The list reaches at most ``factor * horizon`` lattice edges and leaves out
+            voxels within ``floor(factor * horizon)`` bonds of each other; 1 to 2.
+    """
+
+    voxel_size: float
+    duration: float
+    temperature_amplitude: float
+    period: float
+    time_step_fraction: float = 0.9
+    bond_damping: float = 1.0
+    slow_damping: float = 0.01
+    self_collision: bool = True
+    collision_horizon: float = 2.0
+    collision_list_factor: float = 1.5
+
+
+@attrs.frozen(eq=False)
+class Result:
+    """What became of a batch of bodies.
+
+    Attributes:
+        tracks: Positions in m. ``tip`` (the last occupied voxel in the order x fastest, then y, then z),
+            ``face`` (the mass-weighted mean of the voxels with the largest initial x) and ``body`` (that of
+            all voxels) are ``float64[N, S, 3]``; ``voxels`` is ``float64[N, S, X, Y, Z, 3]``, NaN in empty
+            cells. From the step at which a body diverged its samples are NaN.
+        diverged_step: ``int64[N]``; 0, or the step (from 1) at which the body diverged.
+    """
+
+    tracks: dict[Track, NDArray[np.float64]]
+    diverged_step: NDArray[np.int64]
+
+
+class Model:
+    """A canvas with its materials, settings and clamped cells; read-only once made.
+
+    Args:
+        canvas: Cells along x, y and z.
+        palette: The material of each code that a cell may have, from 1 to 255. Code 0 is an empty cell.
+        settings: How bodies are simulated.
+        clamped: ``bool[X, Y, Z]``, true where a voxel is held with all its degrees of freedom.
+
+    Raises:
+        ValueError: A setting or a material is out of its range, or an array has the wrong shape.
+        MemoryError: There is not enough memory.
+    """
+
+    def __init__(
+        self,
+        canvas: tuple[int, int, int],
+        palette: Mapping[int, Material],
+        settings: Settings,
+        clamped: ArrayLike,
+    ) -> None:
+        self.canvas: Final = canvas
+        self.palette: Final = dict(palette)
+        self.settings: Final = settings
+        held = _cells("clamped", clamped, np.bool_, canvas)
+        pointer = ffi.new("vox_model **")
+        culprit = ffi.new("int64_t *")
+        status = lib.vox_model_create(
+            ffi.new("struct vox_settings *", _settings_fields(canvas, settings)),
+            _palette_entries(self.palette),
+            lib.VOX_MAX_CODES,
+            ffi.from_buffer("uint8_t[]", held),
+            pointer,
+            culprit,
+        )
+        if status != lib.VOX_OK:
+            raise self._model_error(status, culprit[0])
+        self._handle = ffi.gc(pointer[0], lib.vox_model_destroy)
+
+    def time_steps(self, material: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Return the time step and the number of steps of each body of a batch.
+
+        Args:
+            material: ``uint8[N, X, Y, Z]``, material codes.
+
+        Returns:
+            ``float64[N]`` in s, and ``int64[N]``.
+
+        Raises:
+            ValueError: A body is empty or has an unknown material, or the array has the wrong shape or type.
+        """
+        cells = _cells("material", material, np.uint8, (-1, *self.canvas))
+        n = len(cells)
+        dt, steps = np.empty(n), np.empty(n, np.int64)
+        culprit = ffi.new("int64_t *")
+        status = lib.vox_time_steps(
+            self._handle,
+            n,
+            ffi.from_buffer("uint8_t[]", cells),
+            ffi.from_buffer("double[]", dt),
+            ffi.from_buffer("int64_t[]", steps),
+            culprit,
+        )
+        _check_batch(status, culprit[0])
+        return dt, steps
+
+    def simulate(
+        self,
+        material: ArrayLike,
+        phase_cycles: ArrayLike,
+        sample_steps: Sequence[int] | NDArray[np.int64],
+        tracks: Iterable[Track] = ("tip", "face", "body", "voxels"),
+    ) -> Result:
+        """Simulate a batch of bodies, each on its own and to the end of the duration.
+
+        Args:
+            material: ``uint8[N, X, Y, Z]``, material codes.
+            phase_cycles: ``float64[N, X, Y, Z]``, phase lead of each voxel in cycles, at most 1e6 either way;
+                what stands at empty and passive cells does not matter.
+            sample_steps: ``int64[S]``, strictly ascending, the steps after which positions are wanted; 0 is
+                the initial state. No body may have fewer steps than the last.
+            tracks: What is wanted.
+
+        Returns:
+            The tracks that were asked for, and which bodies diverged.
+
+        Raises:
+            ValueError: An argument is out of its range or has the wrong shape or type; nothing was simulated.
+            MemoryError: There is not enough memory.
+        """
+        cells = _cells("material", material, np.uint8, (-1, *self.canvas))
+        n = len(cells)
+        phases = _cells("phase_cycles", phase_cycles, np.float64, (n, *self.canvas))
+        samples = _array("sample_steps", sample_steps, np.int64, (-1,))
+        shapes = self._track_shapes(n, len(samples))
+        unknown = sorted(set(tracks := tuple(tracks)) - set(shapes))
+        if unknown:
+            raise ValueError(f"unknown tracks {', '.join(unknown)}; there are {', '.join(shapes)}")
+        out: dict[Track, NDArray[np.float64]] = {name: np.empty(shapes[name]) for name in tracks}
+        diverged_step = np.empty(n, np.int64)
+        culprit = ffi.new("int64_t *")
+        pointers = {name: ffi.from_buffer("double[]", track) for name, track in out.items()}
+        status = lib.vox_simulate(
+            self._handle,
+            n,
+            ffi.from_buffer("uint8_t[]", cells),
+            ffi.from_buffer("double[]", phases),
+            len(samples),
+            ffi.from_buffer("int64_t[]", samples),
+            ffi.new("struct vox_tracks *", pointers),
+            ffi.from_buffer("int64_t[]", diverged_step),
+            culprit,
+        )
+        _check_batch(status, culprit[0])
+        if "voxels" in out:
+            out["voxels"] = np.ascontiguousarray(out["voxels"].transpose(0, 1, 4, 3, 2, 5))
+        return Result(out, diverged_step)
+
+    def _track_shapes(self, n: int, samples: int) -> dict[Track, tuple[int, ...]]:
+        """Return the shapes in which the solver writes."""
+        point = (n, samples, 3)
+        return {"tip": point, "face": point, "body": point, "voxels": (n, samples, *self.canvas[::-1], 3)}
+
+    def _model_error(self, status: int, culprit: int) -> Exception:
+        """Return the error for a model that could not be made, with the value that was given."""
+        field = ffi.typeof("enum vox_status").elements[status].removeprefix("VOX_BAD_").lower()
+        if field == "canvas":
+            return _error(status, f", got {self.canvas}")
+        if culprit >= 0:
+            return _error(status, f", got {getattr(self.palette[culprit], field)} for material {culprit}")
+        if hasattr(self.settings, field):
+            return _error(status, f", got {getattr(self.settings, field)}")
+        return _error(status, "")
+
+
+def _settings_fields(canvas: tuple[int, int, int], settings: Settings) -> dict[str, int | float]:
+    nx, ny, nz = canvas
+    return {"nx": nx, "ny": ny, "nz": nz, **attrs.asdict(settings)}
+
+
+def _palette_entries(palette: Mapping[int, Material]) -> Any:
+    """Return the palette as the solver wants it: indexed by code."""
+    entries = ffi.new("struct vox_material[]", lib.VOX_MAX_CODES)
+    for code, material in palette.items():
+        if not 0 < code < lib.VOX_MAX_CODES:
+            raise _error(lib.VOX_BAD_PALETTE, f", got {code}")
+        entries[code] = {"used": 1, **attrs.asdict(material)}
+    return entries
+
+
+def _array(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[int, ...]) -> NDArray[Any]:
+    """Return an array of a type, if that holds all its values exactly, and of a shape (-1: any length)."""
+    array = np.asarray(values)
+    wanted = np.dtype(dtype)
+    if array.size and not np.can_cast(array.dtype, wanted):
+        raise ValueError(f"{name} must be {wanted}, got {array.dtype}")
+    fits = len(shape) == array.ndim and all(w in (-1, n) for w, n in zip(shape, array.shape, strict=True))
+    if not fits:
+        expected = ", ".join("N" if n == -1 else str(n) for n in shape)
+        raise ValueError(f"{name} must have the shape [{expected}], got {list(array.shape)}")
+    return np.ascontiguousarray(array, dtype=wanted)
+
+
+def _cells(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[int, ...]) -> NDArray[Any]:
+    """Return an array over cells in the solver's order: x fastest, then y, then z."""
+    array = _array(name, values, dtype, shape)
+    return np.ascontiguousarray(array.swapaxes(-1, -3))
+
+
+def _error(status: int, detail: str) -> Exception:
+    """Return the error that a status stands for."""
+    message = ffi.string(lib.vox_status_message(status)).decode() + detail
+    return MemoryError(message) if status == lib.VOX_NO_MEMORY else ValueError(message)
+
+
+def _check_batch(status: int, culprit: int) -> None:
+    """Raise what is wrong with a batch, if anything, naming the body."""
+    if status != lib.VOX_OK:
+        raise _error(status, f" (body {culprit})" if culprit >= 0 else "")

@@ -1,0 +1,236 @@
+"""The four averages of the paper: ``am``, ``wm``, ``gm``, ``hm``.
+
+All of them sort the scores first, so that their order cannot matter, even in the last bit, and compute with
+:mod:`math`: the last bits of numpy's ``exp`` and ``log`` depend on the vector unit of the processor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import ClassVar
+
+import attrs
+import numpy as np
+from attrs import validators
+
+from evoframe import Aggregator, ConfigurationError, Scores, hookimpl
+
+__all__ = ["PAPER_WEIGHTS", "ArithmeticMean", "GeometricMean", "HarmonicMean", "WeightedMean"]
+
+LARGEST = 1e100
+"""Up to this score every average is finite."""
+
+PAPER_WEIGHTS: Mapping[int, tuple[float, ...]] = MappingProxyType(
+    {
+        2: (0.6, 0.4),
+        3: (0.5, 0.3, 0.2),
+        5: (0.4, 0.3, 0.15, 0.1, 0.05),
+        7: (0.35, 0.25, 0.15, 0.12, 0.07, 0.04, 0.02),
+        10: (0.3, 0.2, 0.15, 0.12, 0.08, 0.05, 0.04, 0.03, 0.02, 0.01),
+    }
+)
+"""Number of collaborators -> weights of the sorted scores, the largest score first (the paper's table)."""
+
+FOLDED: Mapping[int, int] = MappingProxyType({4: 2, 6: 3, 20: 10})
+"""Number of collaborators that ``fold`` accepts -> number of pairs that remain."""
+
+
+@hookimpl
+def evoframe_aggregators() -> Mapping[str, type[Aggregator]]:
+    """Offer the averages of the paper."""
+    return {"am": ArithmeticMean, "wm": WeightedMean, "gm": GeometricMean, "hm": HarmonicMean}
+
+
+@attrs.frozen
+class ArithmeticMean:
+    """Arithmetic mean of the scores (AM of the paper, arXiv 2510.24510)."""
+
+    domain: ClassVar[tuple[float, float]] = (-LARGEST, LARGEST)
+
+    def check(self, n: int) -> None:
+        """Accept any number of collaborators but none."""
+        _refuse_none("am", n)
+
+    def aggregate(self, scores: Scores) -> float:
+        """Return the sum of *scores*, rounded once, over their number."""
+        values = _ascending(scores)
+        return math.fsum(values) / len(values)
+
+
+def _sum_to_one(_: object, __: object, weights: tuple[float, ...]) -> None:
+    if not weights:
+        raise ValueError("expected at least one weight")
+    for weight in weights:
+        if not weight >= 0:
+            raise ValueError(f"expected no negative weight, found {weight}")
+    total = math.fsum(weights)
+    if not abs(total - 1) <= 1e-12:
+        raise ValueError(f"expected weights that sum to 1, these sum to {total}")
+
+
+@attrs.frozen
+class WeightedMean:
+    """Weighted mean of the sorted scores (WM of the paper, arXiv 2510.24510).
+
+    Scores are sorted from the largest down and dotted with *weights*, so an individual is rewarded for its
+    best encounters. Without *weights* the paper's table for 2, 3, 5, 7 or 10 collaborators is used.
+
+    Attributes:
+        weights: Non-negative, summing to 1; one for each collaborator, that of the largest score first.
+        fold: Accept 4, 6 and 20 collaborators too, by the rule of the paper's authors: neighbouring pairs of
+            the sorted scores are averaged, and the 2, 3 or 10 averages are weighted by the paper's table.
+    """
+
+    weights: tuple[float, ...] | None = attrs.field(default=None, validator=validators.optional(_sum_to_one))
+    fold: bool = attrs.field(default=False)
+
+    domain: ClassVar[tuple[float, float]] = (-LARGEST, LARGEST)
+
+    @fold.validator
+    def _works_with_the_table(self, _: object, fold: bool) -> None:
+        if fold and self.weights is not None:
+            raise ValueError(
+                "fold works with the paper's weights only; set either aggregator.weights or aggregator.fold"
+            )
+
+    def check(self, n: int) -> None:
+        """Refuse *n* collaborators for which there are no weights."""
+        _refuse_none("wm", n)
+        self._weights(n)
+
+    def aggregate(self, scores: Scores) -> float:
+        """Return the weighted mean of *scores*."""
+        values = _ascending(scores)[::-1]
+        weights = self._weights(len(values))
+        if len(weights) < len(values):
+            values = [(larger + smaller) / 2 for larger, smaller in _pairs(values)]
+        mean = math.fsum(weight * value for weight, value in zip(weights, values, strict=True))
+        return _between(values[-1], mean, values[0])
+
+    def _weights(self, n: int) -> tuple[float, ...]:
+        """Return the weights for *n* scores, or for the pairs that are left of them."""
+        if self.weights is not None:
+            if len(self.weights) != n:
+                raise ConfigurationError(
+                    f"wm has {_count(len(self.weights), 'weight')} for {_count(n, 'collaborator')}; "
+                    "set aggregator.weights to one for each collaborator"
+                )
+            return self.weights
+        weights = PAPER_WEIGHTS.get(FOLDED.get(n, n) if self.fold else n)
+        if weights is None:
+            raise ConfigurationError(_no_weights(n))
+        return weights
+
+
+def _no_weights(n: int) -> str:
+    paper = ", ".join(str(count) for count in PAPER_WEIGHTS)
+    advice = " or aggregator.fold = true" if n in FOLDED else ""
+    return (
+        f"wm has no weights for {_count(n, 'collaborator')} (the paper gives {paper}); "
+        f"set aggregator.weights{advice}"
+    )
+
+
+@attrs.frozen
+class GeometricMean:
+    """Geometric mean of the scores (GM of the paper, arXiv 2510.24510).
+
+    As in the code of the paper's authors, a score that is not positive counts as *floor*, while a smaller
+    positive one is left alone: 1e-6 counts less than -1.
+
+    Attributes:
+        floor: Stands for every score that is not positive; in the objective's unit.
+        clip: Raise the positive scores below *floor* to it too, so that a greater score never counts less.
+    """
+
+    floor: float = attrs.field(default=1e-5, validator=[validators.gt(0), validators.le(LARGEST)])
+    clip: bool = False
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """From *floor* up no score is replaced."""
+        return self.floor, LARGEST
+
+    def check(self, n: int) -> None:
+        """Accept any number of collaborators but none."""
+        _refuse_none("gm", n)
+
+    def aggregate(self, scores: Scores) -> float:
+        """Return the exponential of the mean logarithm of *scores*."""
+        values = _positive(scores, self.floor, clip=self.clip)
+        mean = math.exp(math.fsum(math.log(value) for value in values) / len(values))
+        return _between(values[0], mean, values[-1])
+
+
+@attrs.frozen
+class HarmonicMean:
+    """Harmonic mean of the scores (HM of the paper, arXiv 2510.24510).
+
+    As in the code of the paper's authors, a score that is not positive counts as *floor*, while a smaller
+    positive one is left alone: 1e-6 counts less than -1.
+
+    Attributes:
+        floor: Stands for every score that is not positive; in the objective's unit.
+        clip: Raise the positive scores below *floor* to it too, so that a greater score never counts less.
+    """
+
+    floor: float = attrs.field(default=1e-5, validator=[validators.gt(0), validators.le(LARGEST)])
+    clip: bool = False
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """From *floor* up no score is replaced."""
+        return self.floor, LARGEST
+
+    def check(self, n: int) -> None:
+        """Accept any number of collaborators but none."""
+        _refuse_none("hm", n)
+
+    def aggregate(self, scores: Scores) -> float:
+        """Return the reciprocal of the mean reciprocal of *scores*."""
+        values = _positive(scores, self.floor, clip=self.clip)
+        # In units of the smallest value every reciprocal is at most 1: nothing overflows, not even 1/5e-324.
+        smallest = values[0]
+        mean = smallest * (len(values) / math.fsum(smallest / value for value in values))
+        return _between(smallest, mean, values[-1])
+
+
+def _refuse_none(name: str, n: int) -> None:
+    if n < 1:
+        raise ConfigurationError(f"{name} needs at least 1 collaborator, not {n}")
+
+
+def _ascending(scores: Scores) -> list[float]:
+    """Return *scores* sorted, as Python's floats.
+
+    Raises:
+        ValueError: There is none, or one is not finite.
+    """
+    values: list[float] = np.sort(np.asarray(scores, dtype=np.float64)).tolist()
+    if not values:
+        raise ValueError("there are no scores to aggregate")
+    for value in (values[0], values[-1]):  # the sort has put infinities at the ends, and a NaN at the last
+        if not math.isfinite(value):
+            raise ValueError(f"scores must be finite, found {value}")
+    return values
+
+
+def _positive(scores: Scores, floor: float, *, clip: bool) -> list[float]:
+    """Return the sorted *scores* with *floor* in the place of those that are not positive, or too small."""
+    least = floor if clip else 0.0
+    return sorted(value if value > least else floor for value in _ascending(scores))
+
+
+def _pairs(values: list[float]) -> zip[tuple[float, float]]:
+    return zip(values[::2], values[1::2], strict=True)
+
+
+def _between(smallest: float, mean: float, largest: float) -> float:
+    """Return *mean* without the rounding errors that take it out of the range of the values."""
+    return min(max(mean, smallest), largest)
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n} {noun}{'' if n == 1 else 's'}"

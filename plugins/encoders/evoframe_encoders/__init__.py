@@ -1,0 +1,17 @@
+"""Encoders of networks: voxel bodies, and the phase offsets of their contractile voxels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from evoframe import Encoder, hookimpl
+from evoframe_encoders.controller import CppnController
+from evoframe_encoders.morphology import CppnMorphology
+
+__all__ = ["CppnController", "CppnMorphology", "evoframe_encoders"]
+
+
+@hookimpl
+def evoframe_encoders() -> Mapping[str, type[Encoder]]:
+    """Offer the encoders ``cppn-morphology`` and ``cppn-controller``."""
+    return {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}

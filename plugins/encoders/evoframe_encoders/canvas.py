@@ -1,0 +1,36 @@
+"""Where a network is asked: the voxels of a canvas as points."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["CONTRACTILE", "EMPTY", "MORPHOLOGY", "PASSIVE", "Canvas", "voxel_points"]
+
+Canvas: TypeAlias = tuple[int, int, int]
+"""Number of voxels along x, y and z."""
+
+MORPHOLOGY = "morphology"
+"""The role of the material codes."""
+
+EMPTY, PASSIVE, CONTRACTILE = 0, 1, 3
+"""Material codes; contractile is 3 because the authors feed that to the network and write it to VXA files."""
+
+
+@lru_cache(maxsize=8)
+def voxel_points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
+    """Return the coordinates of all voxels, ``float64[X, Y, Z, 3]``, read-only.
+
+    Args:
+        canvas: Number of voxels along x, y and z.
+        normalized: Whether each axis runs from -1 to 1 (0 if it has one voxel) instead of from 0 in voxels.
+    """
+    axes = [np.linspace(-1.0, 1.0, n) if normalized else np.arange(n, dtype=np.float64) for n in canvas]
+    if normalized:
+        axes = [axis if len(axis) > 1 else np.zeros(1) for axis in axes]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    points.setflags(write=False)
+    return points

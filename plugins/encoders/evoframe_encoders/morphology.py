@@ -1,0 +1,81 @@
+"""From a network to a body: the encoder ``cppn-morphology``."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import attrs
+import numpy as np
+from attrs.validators import ge
+from numpy.typing import NDArray
+
+from evoframe import Design, Network
+from evoframe_encoders.canvas import CONTRACTILE, EMPTY, MORPHOLOGY, PASSIVE, Canvas, voxel_points
+
+__all__ = ["CppnMorphology"]
+
+_MOST_VOXELS = 2**24
+
+
+def _possible_canvas(_instance: Any, attribute: attrs.Attribute[Canvas], canvas: Canvas) -> None:
+    lengths = canvas if isinstance(canvas, tuple) else ()
+    if len(lengths) != 3 or not all(isinstance(n, int) and n >= 1 for n in lengths):
+        raise ValueError(f"{attribute.name} must be three whole numbers of at least 1, not {canvas}")
+    if math.prod(canvas) > _MOST_VOXELS:
+        raise ValueError(f"{attribute.name} {canvas} has more than {_MOST_VOXELS} voxels")
+
+
+@attrs.frozen
+class CppnMorphology:
+    """A body drawn by a network that is asked for each voxel's presence and material.
+
+    A voxel is present if the absolute value of the first output reaches *threshold*; then it is contractile
+    if that of the second does, else passive. With *enclosure* the outermost layer of the canvas is passive
+    whatever the network says, so that the free end always exists and a body is never empty.
+
+    Attributes:
+        canvas: Number of voxels along x, y and z.
+        enclosure: Whether the outermost layer is passive and only the interior is drawn (paper).
+        threshold: What an output must reach, without unit (paper).
+        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; the paper's networks see
+            the indices of voxels.
+    """
+
+    canvas: Canvas = attrs.field(default=(20, 8, 8), validator=_possible_canvas)
+    enclosure: bool = True
+    threshold: float = attrs.field(default=0.5, validator=ge(0.0))
+    normalized_coordinates: bool = False
+
+    @property
+    def inputs(self) -> int:
+        """The coordinates x, y, z."""
+        return 3
+
+    @property
+    def outputs(self) -> int:
+        """Presence and material."""
+        return 2
+
+    @property
+    def requires(self) -> tuple[str, ...]:
+        """Nothing: a body stands at the beginning of a design."""
+        return ()
+
+    @property
+    def provides(self) -> tuple[str, ...]:
+        """The morphology, ``uint8[X, Y, Z]``: 0 empty, 1 passive, 3 contractile."""
+        return (MORPHOLOGY,)
+
+    def decode(self, network: Network, design: Design) -> Design:
+        """Return *design* with the morphology that *network* draws."""
+        body = np.full(self.canvas, PASSIVE, dtype=np.uint8)
+        drawn = (slice(1, -1),) * 3 if self.enclosure else (slice(None),) * 3
+        points = voxel_points(self.canvas, self.normalized_coordinates)[drawn]
+        body[drawn] = self._materials(network(points.reshape(-1, 3))).reshape(points.shape[:3])
+        body.setflags(write=False)
+        return design.with_role(MORPHOLOGY, body)
+
+    def _materials(self, outputs: NDArray[np.float64]) -> NDArray[np.uint8]:
+        present, contractile = (np.abs(outputs) >= self.threshold).T
+        return np.where(present, np.where(contractile, CONTRACTILE, PASSIVE), EMPTY).astype(np.uint8)

@@ -1,0 +1,231 @@
+"""NEAT: the evolver ``neat``, an ask/tell adapter around neat-python."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import attrs
+import neat
+import numpy as np
+from attrs.validators import ge, in_
+from neat.reporting import ReporterSet
+from neat.species import Species
+from numpy.typing import NDArray
+
+from evoframe import ConfigurationError, Member, Network
+from evoframe_evolvers.checked import entry, number, rows, whole
+from evoframe_evolvers.cohort import Cohort
+from evoframe_evolvers.crowding import ExactReproduction, RoomyStagnation
+from evoframe_evolvers.genomes import Counter, GenePool, Sections
+from evoframe_evolvers.options import GenomeOptions, at_least, finite, probability
+
+__all__ = ["Neat", "NeatRun"]
+
+_log = logging.getLogger(__name__)
+
+
+@attrs.frozen(kw_only=True)
+class Neat(GenomeOptions):
+    """NeuroEvolution of Augmenting Topologies (Stanley and Miikkulainen 2002), as neat-python 2.0 does it.
+
+    The defaults are those of the paper's table and, where it is silent, of the authors' configuration. How
+    genomes begin and mutate is described at :class:`GenomeOptions`.
+
+    The elites or least members of many species may not fit into the population; then *elitism* and
+    *min_species_size* are 1 for that turn. If every species dies out, which takes a *species_elitism* of 0,
+    the population starts afresh.
+
+    Attributes:
+        compatibility_threshold: Genetic distance from which on two genomes are of different species (paper).
+        compatibility_disjoint: What a gene that only one of two genomes has adds to their distance (paper).
+        compatibility_weight: What a difference of 1 in a weight, bias or activation adds to it (paper).
+        max_stagnation: Generations without a better species fitness until a species dies out (paper).
+        species_elitism: So many of the best species do not die out (authors' configuration).
+        species_fitness: The fitness of a species: the ``max``, ``mean``, ``min`` or ``median`` of its members
+            (authors' configuration).
+        elitism: So many of the best members of each species live on unchanged (authors' configuration).
+        survival_threshold: Share of a species, from the best down, that may be parents (paper).
+        min_species_size: The fewest members of a species (neat-python's default).
+    """
+
+    compatibility_threshold: float = attrs.field(default=3.0, validator=ge(0.0))
+    compatibility_disjoint: float = attrs.field(default=1.0, validator=[finite, ge(0.0)])
+    compatibility_weight: float = attrs.field(default=0.5, validator=[finite, ge(0.0)])
+    max_stagnation: int = at_least(1, 25)
+    species_elitism: int = at_least(0, 2)
+    species_fitness: str = attrs.field(default="max", validator=in_(("max", "mean", "min", "median")))
+    elitism: int = at_least(0, 2)
+    survival_threshold: float = probability(0.6)
+    min_species_size: int = at_least(1, 1)
+
+    def check(self, size: int) -> None:
+        """Refuse a population that would never have offspring."""
+        if size < 1:
+            raise ConfigurationError(f"a population needs at least 1 member, not {size}")
+        if self.elitism >= size:
+            raise ConfigurationError(
+                f"elitism {self.elitism} leaves no place for offspring in a population of {size}"
+            )
+        if self.min_species_size > size:
+            raise ConfigurationError(f"min_species_size {self.min_species_size} of a population of {size}")
+
+    def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> NeatRun:
+        """Begin to evolve *size* genomes that express networks with *inputs* and *outputs*."""
+        self.check(size)
+        return NeatRun(GenePool(self, _selection(self), inputs, outputs, rng), size)
+
+
+def _selection(options: Neat) -> Sections:
+    return {
+        "DefaultGenome": {
+            "compatibility_disjoint_coefficient": options.compatibility_disjoint,
+            "compatibility_weight_coefficient": options.compatibility_weight,
+        },
+        "DefaultSpeciesSet": {"compatibility_threshold": options.compatibility_threshold},
+        "DefaultStagnation": {
+            "species_fitness_func": options.species_fitness,
+            "max_stagnation": options.max_stagnation,
+            "species_elitism": options.species_elitism,
+        },
+        "DefaultReproduction": {
+            "elitism": options.elitism,
+            "survival_threshold": options.survival_threshold,
+            "min_species_size": options.min_species_size,
+        },
+    }
+
+
+class NeatRun:
+    """NEAT at work on one population."""
+
+    def __init__(self, pool: GenePool, size: int) -> None:
+        config, reporters = pool.config, ReporterSet()
+        stagnation = RoomyStagnation(config.stagnation_config, reporters, config.reproduction_config)
+        self._pool = pool
+        self._size = size
+        self._reproduction = ExactReproduction(config.reproduction_config, reporters, stagnation)
+        self._reproduction.genome_indexer = pool.genome_ids
+        self._reproduction.innovation_tracker = pool.tracker
+        self._species = neat.DefaultSpeciesSet(config.species_set_config, reporters)
+        self._species.indexer = Counter(1)
+        with pool.stream.swapped_in():
+            genomes = self._create()
+            self._species.speciate(config, genomes, 0)
+        self._cohort = Cohort(genomes)
+
+    def ask(self) -> Sequence[Any]:
+        """Return the genomes to evaluate: first the initial ones, later the offspring of those told about."""
+        if self._cohort.finished:
+            self._reproduce()
+        return self._cohort.ask()
+
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:  # noqa: ARG002
+        """Take the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
+        self._cohort.tell(fitness)
+
+    def genomes(self) -> Sequence[Any]:
+        """Return the genomes of :meth:`members`; after :meth:`restore` nobody else has them."""
+        return list(self._cohort.genomes.values())
+
+    def members(self) -> Sequence[Member]:
+        """Return the current members, in the order of the last :meth:`ask`."""
+        return self._cohort.members(self._species.get_species_id)
+
+    def express(self, genome: Any) -> Network:
+        """Return the network that *genome* encodes."""
+        return self._pool.express(genome)
+
+    def dump(self, genome: Any) -> Any:
+        """Return *genome* as JSON values."""
+        return self._pool.dump(genome)
+
+    def _create(self) -> dict[int, Any]:
+        config = self._pool.config
+        genomes: dict[int, Any] = self._reproduction.create_new(
+            config.genome_type, config.genome_config, self._size
+        )
+        self._reproduction.ancestors.clear()
+        return genomes
+
+    def _reproduce(self) -> None:
+        config, generation = self._pool.config, self._cohort.generation
+        with self._pool.stream.swapped_in():
+            offspring = self._reproduction.reproduce(config, self._species, self._size, generation)
+            if not offspring:
+                _log.warning("every species died out in generation %d: a fresh start", generation)
+                offspring = self._create()
+            self._species.speciate(config, offspring, generation)
+        self._cohort.succeed(offspring)
+
+    def state(self) -> Any:
+        """Return everything needed to continue, as JSON values."""
+        return {
+            "evolver": "neat",
+            "pool": self._pool.state(),
+            "cohort": self._cohort.state(self.dump),
+            "next_species": self._species.indexer.value,
+            "species": [_dump_species(species) for species in self._species.species.values()],
+        }
+
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Raises:
+            ValueError: It is not the state of such a population; this one stays as it is.
+        """
+        if entry(state, "evolver", str) != "neat":
+            raise ValueError(f"the state is one of '{state['evolver']}', not of 'neat'")
+        cohort = Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
+        species = [_load_species(saved, cohort.genomes) for saved in rows(state, "species")]
+        next_species = whole(state, "next_species", 1)
+        _check_partition(species, cohort.genomes, next_species)
+        self._pool.restore(entry(state, "pool", dict), cohort.genomes.values())
+        self._cohort = cohort
+        self._species.indexer.value = next_species
+        self._species.species = {kind.key: kind for kind in species}
+        self._species.genome_to_species = {key: kind.key for kind in species for key in kind.members}
+
+
+def _dump_species(species: Any) -> dict[str, Any]:
+    return {
+        "id": species.key,
+        "created": species.created,
+        "last_improved": species.last_improved,
+        "representative": species.representative.key,
+        "members": list(species.members),
+        "fitness": species.fitness,
+        "adjusted_fitness": species.adjusted_fitness,
+        "fitness_history": list(species.fitness_history),
+    }
+
+
+def _load_species(saved: Any, genomes: Mapping[int, Any]) -> Any:
+    species = Species(whole(saved, "id", 1), whole(saved, "created", 0))
+    species.last_improved = whole(saved, "last_improved", 0)
+    keys = rows(saved, "members")
+    representative = whole(saved, "representative")
+    strangers = [key for key in (representative, *keys) if key not in genomes]
+    if strangers:
+        raise ValueError(f"species {species.key} has a member {strangers[0]!r} that is not in the population")
+    species.update(genomes[representative], {key: genomes[key] for key in keys})
+    species.fitness = _number_or_none(saved, "fitness")
+    species.adjusted_fitness = _number_or_none(saved, "adjusted_fitness")
+    history = rows(saved, "fitness_history")
+    species.fitness_history = [number({"fitness_history": value}, "fitness_history") for value in history]
+    return species
+
+
+def _number_or_none(saved: Any, key: str) -> float | None:
+    return None if entry(saved, key, object) is None else number(saved, key)
+
+
+def _check_partition(species: Sequence[Any], genomes: Mapping[int, Any], next_species: int) -> None:
+    """Make sure that every genome is in one species, and every species in one place."""
+    members = [key for kind in species for key in kind.members]
+    if sorted(members) != sorted(genomes):
+        raise ValueError("the species do not divide the population among them")
+    keys = {kind.key for kind in species}
+    if len(keys) < len(species) or max(keys) >= next_species or not all(kind.members for kind in species):
+        raise ValueError("the ids of the species are not what they should be, or one is empty")

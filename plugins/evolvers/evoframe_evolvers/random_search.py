@@ -1,0 +1,114 @@
+"""Random search: the evolver ``random``, which learns nothing, for comparison at equal cost."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import attrs
+import neat
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe import ConfigurationError, Member, Network
+from evoframe_evolvers.checked import entry
+from evoframe_evolvers.cohort import Cohort
+from evoframe_evolvers.genomes import NO_SELECTION, GenePool
+from evoframe_evolvers.options import GenomeOptions, at_least
+
+__all__ = ["RandomSearch", "RandomSearchRun"]
+
+
+@attrs.frozen(kw_only=True)
+class RandomSearch(GenomeOptions):
+    """A fresh population in every turn, whatever the fitness of the last.
+
+    Each genome begins as NEAT's do and is then mutated so many times, drawn uniformly from 0 to *mutations*.
+    How genomes begin and mutate is described at :class:`GenomeOptions`.
+
+    Attributes:
+        mutations: The most mutations of a genome; with 0 every turn is like the first of a run of NEAT.
+    """
+
+    mutations: int = at_least(0, 0)
+
+    def check(self, size: int) -> None:
+        """Refuse an empty population."""
+        if size < 1:
+            raise ConfigurationError(f"a population needs at least 1 member, not {size}")
+
+    def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> RandomSearchRun:
+        """Begin to draw *size* genomes a turn that express networks with *inputs* and *outputs*."""
+        self.check(size)
+        return RandomSearchRun(GenePool(self, NO_SELECTION, inputs, outputs, rng), size, self.mutations)
+
+
+class RandomSearchRun:
+    """Random search at work on one population."""
+
+    def __init__(self, pool: GenePool, size: int, mutations: int) -> None:
+        self._pool = pool
+        self._size = size
+        self._mutations = mutations
+        self._cohort = Cohort(self._draw_all())
+
+    def ask(self) -> Sequence[Any]:
+        """Return the genomes to evaluate, all of them new."""
+        if self._cohort.finished:
+            self._cohort.succeed(self._draw_all())
+        return self._cohort.ask()
+
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:  # noqa: ARG002
+        """Take the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
+        self._cohort.tell(fitness)
+
+    def genomes(self) -> Sequence[Any]:
+        """Return the genomes of :meth:`members`; after :meth:`restore` nobody else has them."""
+        return list(self._cohort.genomes.values())
+
+    def members(self) -> Sequence[Member]:
+        """Return the current members, in the order of the last :meth:`ask`."""
+        return self._cohort.members(lambda _: None)
+
+    def express(self, genome: Any) -> Network:
+        """Return the network that *genome* encodes."""
+        return self._pool.express(genome)
+
+    def dump(self, genome: Any) -> Any:
+        """Return *genome* as JSON values."""
+        return self._pool.dump(genome)
+
+    def _draw_all(self) -> dict[int, Any]:
+        self._pool.tracker.reset_generation()
+        with self._pool.stream.swapped_in():
+            genomes = [self._draw() for _ in range(self._size)]
+        return {genome.key: genome for genome in genomes}
+
+    def _draw(self) -> Any:
+        genome = neat.DefaultGenome(next(self._pool.genome_ids))
+        genome.configure_new(self._pool.config.genome_config)
+        times = random.randint(0, self._mutations) if self._mutations else 0  # noqa: S311 - of the private stream
+        for _ in range(times):
+            genome.mutate(self._pool.config.genome_config)
+        return genome
+
+    def state(self) -> Any:
+        """Return everything needed to continue, as JSON values."""
+        return {
+            "evolver": "random",
+            "pool": self._pool.state(),
+            "cohort": self._cohort.state(self.dump),
+        }
+
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Raises:
+            ValueError: It is not the state of such a population; this one stays as it is.
+        """
+        if entry(state, "evolver", str) != "random":
+            raise ValueError(f"the state is one of '{state['evolver']}', not of 'random'")
+        cohort = Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
+        self._pool.restore(entry(state, "pool", dict), cohort.genomes.values())
+        self._cohort = cohort

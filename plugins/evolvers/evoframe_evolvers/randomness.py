@@ -1,0 +1,64 @@
+"""A random stream of one's own within a library that draws from Python's global one."""
+
+from __future__ import annotations
+
+import random
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+__all__ = ["PrivateStream"]
+
+_GLOBAL_RANDOM = threading.Lock()
+"""There is one global stream, so only one population at a time may stand in for it."""
+
+
+class PrivateStream:
+    """The state of Python's Mersenne Twister that belongs to one population.
+
+    neat-python calls the functions of the module :mod:`random`. While :meth:`swapped_in` is open, these draw
+    from this stream; afterwards the global stream goes on as if nothing had happened.
+    """
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        """Seed the stream by one draw from *rng*."""
+        self._state = _seeded(rng)
+
+    @contextmanager
+    def swapped_in(self) -> Iterator[None]:
+        """Let the module :mod:`random` draw from this stream."""
+        with _GLOBAL_RANDOM:
+            outside = random.getstate()
+            random.setstate(self._state)
+            try:
+                yield
+            finally:
+                self._state = random.getstate()
+                random.setstate(outside)
+
+    def state(self) -> Any:
+        """Return the state as JSON values."""
+        version, internal, next_gauss = self._state
+        return [version, list(internal), next_gauss]
+
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Raises:
+            ValueError: It is no such state; this stream stays as it is.
+        """
+        twister = random.Random()  # noqa: S311 - evolution, not cryptography
+        try:
+            version, internal, next_gauss = state
+            twister.setstate((version, tuple(internal), None if next_gauss is None else float(next_gauss)))
+        except (OverflowError, TypeError, ValueError) as error:
+            raise ValueError(f"not the state of a random stream: {error}") from error
+        self._state = twister.getstate()
+
+
+def _seeded(rng: np.random.Generator) -> tuple[Any, ...]:
+    seed = int.from_bytes(rng.bytes(32), "little")
+    return random.Random(seed).getstate()  # noqa: S311 - evolution, not cryptography

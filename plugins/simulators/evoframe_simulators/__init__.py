@@ -1,0 +1,14 @@
+"""The built-in simulator: voxel actuators on libvox."""
+
+from collections.abc import Mapping
+
+from evoframe import Simulator, hookimpl
+from evoframe_simulators.vox import Vox
+
+__all__ = ["Vox", "evoframe_simulators"]
+
+
+@hookimpl
+def evoframe_simulators() -> Mapping[str, type[Simulator]]:
+    """Offer ``vox``."""
+    return {"vox": Vox}

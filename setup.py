@@ -1,0 +1,8 @@
+"""Only what the C extension needs; everything else stands in pyproject.toml."""
+
+from setuptools import setup
+
+setup(
+    cffi_modules=["libvox/build_ffi.py:ffibuilder"],
+    options={"bdist_wheel": {"py_limited_api": "cp311"}},
+)

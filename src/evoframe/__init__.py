@@ -1,0 +1,83 @@
+"""Cooperative coevolution of soft robots: a small core, and plugins for everything else.
+
+This module is the public API: what a plugin author implements (:data:`hookimpl`, the protocols, the values,
+the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :class:`Coevolution`).
+"""
+
+from evoframe._version import __version__
+from evoframe.coevolution import Coevolution
+from evoframe.config import RunConfig, load_config
+from evoframe.errors import (
+    ConfigurationError,
+    EvoframeError,
+    InputError,
+    PluginError,
+    PluginWarning,
+    RunError,
+)
+from evoframe.hookspecs import hookimpl
+from evoframe.loading import Champion, Run, load_run
+from evoframe.protocols import (
+    Aggregator,
+    CollaborationStrategy,
+    Encoder,
+    Evolver,
+    EvolverRun,
+    Executor,
+    ExecutorRun,
+    Network,
+    Objective,
+    Simulator,
+)
+from evoframe.run import assemble, run
+from evoframe.values import (
+    BestPair,
+    Design,
+    Member,
+    Outcome,
+    Pair,
+    PopulationReport,
+    Record,
+    Scores,
+    Turn,
+    Workload,
+)
+
+__all__ = [
+    "Aggregator",
+    "BestPair",
+    "Champion",
+    "Coevolution",
+    "CollaborationStrategy",
+    "ConfigurationError",
+    "Design",
+    "Encoder",
+    "EvoframeError",
+    "Evolver",
+    "EvolverRun",
+    "Executor",
+    "ExecutorRun",
+    "InputError",
+    "Member",
+    "Network",
+    "Objective",
+    "Outcome",
+    "Pair",
+    "PluginError",
+    "PluginWarning",
+    "PopulationReport",
+    "Record",
+    "Run",
+    "RunConfig",
+    "RunError",
+    "Scores",
+    "Simulator",
+    "Turn",
+    "Workload",
+    "__version__",
+    "assemble",
+    "hookimpl",
+    "load_config",
+    "load_run",
+    "run",
+]

@@ -1,0 +1,19 @@
+"""``evoframe completion``."""
+
+from __future__ import annotations
+
+import click
+from click.shell_completion import get_completion_class
+
+__all__ = ["completion"]
+
+
+@click.command(epilog='\b\nExample:\n  eval "$(evoframe completion bash)"')
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@click.pass_context
+def completion(ctx: click.Context, shell: str) -> None:
+    """Print the script that completes commands, options and presets in a SHELL."""
+    class_ = get_completion_class(shell)
+    if class_ is None:
+        raise click.UsageError(f"click knows no completion for {shell}")
+    click.echo(class_(ctx.find_root().command, {}, "evoframe", "_EVOFRAME_COMPLETE").source())

@@ -1,0 +1,32 @@
+"""``evoframe config``."""
+
+from __future__ import annotations
+
+import click
+
+from evoframe.cli.context import configuration_argument, plugins_of, set_option
+from evoframe.config import load_config
+
+__all__ = ["config"]
+
+
+@click.group()
+def config() -> None:
+    """Look at configurations."""
+
+
+_EPILOG = """\b
+Examples:
+  evoframe config show
+  evoframe config show my.toml --set aggregator=gm > resolved.toml
+"""
+
+
+@config.command(epilog=_EPILOG)
+@configuration_argument
+@set_option
+@click.pass_context
+def show(ctx: click.Context, source: str, overrides: tuple[str, ...]) -> None:
+    """Print a configuration with every default written out, after checking it."""
+    resolved = load_config(source, overrides=overrides, plugins=plugins_of(ctx))
+    click.echo(resolved.to_toml(), nl=False)

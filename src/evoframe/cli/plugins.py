@@ -1,0 +1,72 @@
+"""``evoframe plugins``."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from evoframe.cli.context import plugins_of
+from evoframe.plugins import Plugins
+
+__all__ = ["plugins"]
+
+
+@click.group()
+def plugins() -> None:
+    """Look at plugins."""
+
+
+@plugins.command(name="list", epilog="\b\nExamples:\n  evoframe plugins list\n  evoframe plugins list --json")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.pass_context
+def list_(ctx: click.Context, as_json: bool) -> None:
+    """List the components that are installed, who offers them, and the plugins that were skipped."""
+    found = plugins_of(ctx)
+    if as_json:
+        click.echo(json.dumps(_document(found), indent=2))
+        return
+    console = Console()
+    console.print(_table(found))
+    for skipped in found.skipped:
+        console.print(f"skipped: {skipped.source}: {skipped.cause}", markup=False, highlight=False)
+
+
+def _document(found: Plugins) -> dict[str, Any]:
+    return {
+        "components": [
+            {
+                "kind": offer.kind,
+                "name": offer.name,
+                "distribution": offer.source.distribution,
+                "version": offer.source.version,
+                "entry_point": offer.source.entry_point,
+                "class": f"{offer.component.__module__}.{offer.component.__qualname__}",
+            }
+            for offer in _sorted(found)
+        ],
+        "skipped": [
+            {
+                "distribution": skipped.source.distribution,
+                "version": skipped.source.version,
+                "entry_point": skipped.source.entry_point,
+                "cause": skipped.cause,
+            }
+            for skipped in found.skipped
+        ],
+    }
+
+
+def _table(found: Plugins) -> Table:
+    table = Table("kind", "name", "what it is", "distribution", "version", box=None, header_style="bold")
+    for offer in _sorted(found):
+        [what, *_] = (offer.component.__doc__ or "").strip().splitlines() or [""]
+        table.add_row(offer.kind, offer.name, what, offer.source.distribution, offer.source.version)
+    return table
+
+
+def _sorted(found: Plugins) -> list[Any]:
+    return sorted(found.offers, key=lambda offer: (offer.kind, offer.name, offer.source))

@@ -1,0 +1,115 @@
+"""The program ``evoframe``: its global options, its commands, and those that plugins add."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import warnings
+from typing import Any
+
+import click
+
+from evoframe._version import __version__
+from evoframe.cli.completion import completion
+from evoframe.cli.config import config
+from evoframe.cli.context import plugins_of
+from evoframe.cli.plugins import plugins
+from evoframe.cli.run import run
+from evoframe.cli.simulate import simulate
+from evoframe.errors import EvoframeError, PluginWarning, RunError
+from evoframe.observers import Observers
+
+__all__ = ["cli", "main"]
+
+
+class _Failure(click.ClickException):
+    """An error of ours, shown as one message."""
+
+    exit_code = 2
+
+
+class _RunFailure(_Failure):
+    """A run that cannot go on, although its input was good."""
+
+    exit_code = 1
+
+
+def _failure(error: EvoframeError) -> _Failure:
+    return (_RunFailure if isinstance(error, RunError) else _Failure)(str(error))
+
+
+class _Program(click.Group):
+    """A group that knows the commands of plugins too; built-in ones cannot be replaced."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted({*super().list_commands(ctx), *self._of_plugins(ctx).commands})
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        built_in = super().get_command(ctx, cmd_name)
+        return built_in or self._of_plugins(ctx).commands.get(cmd_name)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except EvoframeError as error:
+            raise _failure(error) from error
+
+    def _of_plugins(self, ctx: click.Context) -> click.Group:
+        group = click.Group("evoframe")
+        try:
+            Observers(plugins_of(ctx).manager).tell("evoframe_commands", cli=group)
+        except EvoframeError as error:
+            raise _failure(error) from error
+        return group
+
+
+_EPILOG = """\b
+Examples:
+  evoframe run                                the published experiment
+  evoframe run quick                          a few seconds of it
+  evoframe run --set aggregator=hm --seed 7
+  evoframe simulate runs/paper-1/champion.json
+  evoframe plugins list
+"""
+
+
+@click.group(
+    cls=_Program,
+    epilog=_EPILOG,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.version_option(__version__, prog_name="evoframe", message="%(prog)s %(version)s")
+@click.option("-v", "--verbose", count=True, help="Say more; twice: everything.")
+@click.option("-q", "--quiet", is_flag=True, help="Say only what was asked for, and errors.")
+@click.option(
+    "-p",
+    "plugin",
+    multiple=True,
+    metavar="MODULE",
+    help="Use a plugin that is one local module: an importable name or a .py file. Repeatable.",
+)
+@click.pass_context
+def cli(ctx: click.Context, verbose: int, quiet: bool, plugin: tuple[str, ...]) -> None:  # noqa: ARG001
+    """Cooperative coevolution of soft robots.
+
+    Two populations of networks, one of bodies and one of controllers, are evolved together: each individual
+    is judged by how well it does with partners from the other population.
+    """
+    level = logging.ERROR if quiet else logging.WARNING - 10 * min(verbose, 2)
+    logging.basicConfig(level=level, format="%(levelname)s: %(name)s: %(message)s", force=True)
+
+
+for command in (completion, config, plugins, run, simulate):
+    cli.add_command(command)
+
+
+def main() -> None:
+    """Run the program with the arguments of the process."""
+    warnings.showwarning = _show_warning
+    warnings.simplefilter("always", PluginWarning)
+    cli(prog_name="evoframe")
+
+
+def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+    text = str(message) if issubclass(category, PluginWarning) else f"{category.__name__}: {message}"
+    sys.stderr.write(f"Warning: {text}\n")

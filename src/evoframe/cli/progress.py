@@ -1,0 +1,90 @@
+"""What a run shows while it goes on: a bar on a terminal, a line now and then elsewhere."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from rich import progress
+from rich.console import Console
+
+from evoframe.config import RunConfig
+from evoframe.hookspecs import hookimpl
+from evoframe.values import Turn
+
+__all__ = ["Progress"]
+
+_LINE_INTERVAL = 5.0  # s
+
+
+class Progress:
+    """An observer that reports on standard error."""
+
+    def __init__(self) -> None:
+        self._console = Console(stderr=True)
+        self._bar: progress.Progress | None = None
+        self._task = progress.TaskID(0)
+        self._best: dict[str, float] = {}
+        self._turns = self._pairs = self._simulations = 0
+        self._started = self._shown = time.monotonic()
+
+    @hookimpl
+    def evoframe_run_started(self, config: RunConfig, directory: Path) -> None:
+        """Begin with the name of the run."""
+        self._turns = config.run.generations * len(config.populations)
+        self._started = self._shown = time.monotonic()
+        self._console.print(
+            f"{config.label}, seed {config.run.seed}: {self._turns} turns into {directory}",
+            markup=False,
+            highlight=False,
+        )
+        if self._console.is_terminal:
+            self._bar = _bar(self._console)
+            self._task = self._bar.add_task("initial meeting", total=self._turns + 1, detail="")
+            self._bar.start()
+
+    @hookimpl
+    def evoframe_turn_finished(self, turn: Turn) -> None:
+        """Show the turn, the best fitness of each population, the rate and the share from the cache."""
+        self._pairs += turn.workload.pairs
+        self._simulations += turn.workload.simulations
+        self._best |= {report.population: report.best for report in turn.reports}
+        now = time.monotonic()
+        if self._bar is not None:
+            description = f"turn {turn.index}/{self._turns}"
+            self._bar.update(self._task, advance=1, description=description, detail=self._detail(now))
+        elif now - self._shown >= _LINE_INTERVAL or turn.index == self._turns:
+            self._shown = now
+            self._console.print(
+                f"turn {turn.index}/{self._turns}  {self._detail(now)}  {self._left(turn.index, now)}",
+                markup=False,
+                highlight=False,
+                soft_wrap=True,
+            )
+
+    @hookimpl
+    def evoframe_run_finished(self) -> None:
+        """Leave the terminal as it was."""
+        if self._bar is not None:
+            self._bar.stop()
+
+    def _detail(self, now: float) -> str:
+        best = "  ".join(f"{population} {fitness:.5f}" for population, fitness in self._best.items())
+        rate = self._simulations / max(now - self._started, 1e-9)
+        cached = 1 - self._simulations / self._pairs
+        return f"{best}  {rate:.0f} sim/s  {cached:.0%} cached"
+
+    def _left(self, turn: int, now: float) -> str:
+        seconds = (now - self._started) / (turn + 1) * (self._turns - turn)
+        return f"{seconds:.0f} s left"
+
+
+def _bar(console: Console) -> progress.Progress:
+    return progress.Progress(
+        progress.TextColumn("{task.description}"),
+        progress.BarColumn(bar_width=None),
+        progress.TextColumn("{task.fields[detail]}"),
+        progress.TimeRemainingColumn(),
+        console=console,
+        transient=True,
+    )

@@ -1,0 +1,369 @@
+"""A configuration: what a run is made of, checked as a whole before anything runs."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, Generic, TypeVar, cast
+
+import attrs
+import tomli_w
+from attrs import validators
+
+from evoframe.errors import ConfigurationError
+from evoframe.layers import (
+    COMPONENTS,
+    POPULATION_COMPONENTS,
+    Layer,
+    Layers,
+    Tree,
+    preset_names,
+    read_layers,
+)
+from evoframe.plugins import Plugins, Source, did_you_mean, discover
+from evoframe.protocols import (
+    Aggregator,
+    CollaborationStrategy,
+    Encoder,
+    Evolver,
+    Executor,
+    Objective,
+    Simulator,
+)
+from evoframe.structuring import Fault, StructureError, found, structure, unstructure
+
+__all__ = [
+    "Chosen",
+    "PluginSettings",
+    "PopulationConfig",
+    "RunConfig",
+    "RunSettings",
+    "load_config",
+    "preset_names",
+]
+
+C = TypeVar("C")
+_ROLE = re.compile(r"[a-z][a-z0-9_-]*")
+_RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
+
+
+@attrs.frozen
+class RunSettings:
+    """The table ``[run]``.
+
+    Attributes:
+        seed: The one seed from which all random streams derive.
+        generations: How often each population reproduces (the paper: 200, so 400 turns of two populations).
+    """
+
+    seed: int = attrs.field(default=1, validator=validators.ge(0))
+    generations: int = attrs.field(default=200, validator=validators.ge(0))
+
+
+@attrs.frozen
+class PluginSettings:
+    """The table ``[plugins]``.
+
+    Attributes:
+        block: Distributions whose plugins are not used.
+        require: Distributions whose plugins must be usable.
+    """
+
+    block: tuple[str, ...] = ()
+    require: tuple[str, ...] = ()
+
+
+@attrs.frozen
+class _Size:
+    size: int = attrs.field(default=25, validator=validators.ge(2))
+
+
+@attrs.frozen
+class Chosen(Generic[C]):
+    """A component that was chosen by name.
+
+    Attributes:
+        name: Its name in the configuration.
+        component: The instance, with its options.
+        source: The plugin that offers it.
+    """
+
+    name: str
+    component: C
+    source: Source
+
+
+@attrs.frozen
+class PopulationConfig:
+    """The table ``[populations.ROLE]``.
+
+    Attributes:
+        size: Number of individuals.
+        encoder: Decodes the networks of its genomes.
+        evolver: Evolves its genomes.
+    """
+
+    size: int
+    encoder: Chosen[Encoder]
+    evolver: Chosen[Evolver]
+
+
+@attrs.frozen
+class RunConfig:
+    """Everything that decides a run, resolved and checked.
+
+    Attributes:
+        run: Seed and length.
+        populations: Role -> population, in the order in which they take turns and are decoded.
+        collaboration: Chooses collaborators.
+        aggregator: Folds scores into fitness.
+        simulator: Simulates designs.
+        objective: Scores outcomes.
+        executor: Spreads simulations over workers.
+        plugins: What is blocked and required.
+        label: Name of the preset or file, for the default directory.
+        discovered: The plugins that the components come from.
+    """
+
+    run: RunSettings
+    populations: Mapping[str, PopulationConfig]
+    collaboration: Chosen[CollaborationStrategy]
+    aggregator: Chosen[Aggregator]
+    simulator: Chosen[Simulator]
+    objective: Chosen[Objective]
+    executor: Chosen[Executor]
+    plugins: PluginSettings = attrs.field(factory=PluginSettings)
+    label: str = attrs.field(default="run", eq=False)
+    discovered: Plugins = attrs.field(factory=Plugins, eq=False, repr=False)
+
+    def components(self) -> Iterator[tuple[str, Chosen[Any]]]:
+        """Yield every chosen component with its dotted key."""
+        for role, population in self.populations.items():
+            yield f"populations.{role}.encoder", population.encoder
+            yield f"populations.{role}.evolver", population.evolver
+        for key in COMPONENTS:
+            yield key, getattr(self, key)
+
+    def tables(self) -> Tree:
+        """Return the configuration as TOML tables, every default written out."""
+        populations = {
+            role: {
+                "size": population.size,
+                "encoder": _table(population.encoder),
+                "evolver": _table(population.evolver),
+            }
+            for role, population in self.populations.items()
+        }
+        return {
+            "extends": False,
+            "run": unstructure(self.run),
+            "populations": populations,
+            **{key: _table(getattr(self, key)) for key in COMPONENTS},
+            "plugins": unstructure(self.plugins),
+        }
+
+    def to_toml(self) -> str:
+        """Return the configuration as the text of a TOML file that means the same."""
+        return tomli_w.dumps(self.tables())
+
+
+def load_config(
+    source: str | Path = "paper",
+    *,
+    tables: Tree | None = None,
+    origin: str = "arguments",
+    overrides: Iterable[str] = (),
+    plugins: Plugins | None = None,
+) -> RunConfig:
+    """Read, resolve and check a configuration.
+
+    Args:
+        source: Name of a preset, or path of a TOML file.
+        tables: Settings that override those of the source.
+        origin: What messages call those *tables*.
+        overrides: ``key=value`` with a dotted key and a TOML value, as given to ``--set``; they win.
+        plugins: The plugins to choose from; by default those that are installed.
+
+    Raises:
+        ConfigurationError: With all faults that were found, each with its file and key.
+        PluginError: A plugin that the configuration requires cannot be used.
+    """
+    layers = read_layers(source, [Layer(origin, tables)] if tables else [], overrides)
+    tree = layers.merged()
+    reading = _Reading(tree)
+    settings = reading.section("plugins", PluginSettings) or PluginSettings()
+    usable = (plugins or discover()).without(settings.block)
+    usable.require(settings.require)
+    config = reading.config(usable, settings, Path(source).stem)
+    if config is None:
+        raise ConfigurationError(_report(reading.faults, layers))
+    return config
+
+
+def _report(faults: list[Fault], layers: Layers) -> str:
+    lines = [f"{layers.origin(fault.path)}: {'.'.join(fault.path)}: {fault.message}" for fault in faults]
+    if len(lines) == 1:
+        return lines[0]
+    return "\n  ".join([f"{len(lines)} faults in the configuration:", *lines])
+
+
+def _table(chosen: Chosen[Any]) -> Tree:
+    options: Tree = unstructure(chosen.component)
+    return {"name": chosen.name, **options}
+
+
+class _Reading:
+    """One pass over a tree, which collects faults instead of stopping at the first."""
+
+    def __init__(self, tree: Tree) -> None:
+        self.tree = tree
+        self.faults: list[Fault] = []
+
+    def section(self, key: str, class_: type[C]) -> C | None:
+        return self._structured(self.tree.get(key, {}), class_, (key,))
+
+    def config(self, plugins: Plugins, settings: PluginSettings, label: str) -> RunConfig | None:
+        """Return the configuration, or ``None`` if there are faults."""
+        self._refuse_unknown_keys()
+        run = self.section("run", RunSettings)
+        choose = functools.partial(self._chosen, plugins)
+        populations = self._populations(choose)
+        chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
+        self.faults += _Checks(populations, chosen).faults()
+        if self.faults:
+            return None
+        return RunConfig(
+            run=cast("RunSettings", run),
+            populations=cast("Mapping[str, PopulationConfig]", populations),
+            plugins=settings,
+            label=label,
+            discovered=plugins,
+            **cast("dict[str, Any]", chosen),
+        )
+
+    def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
+        try:
+            return structure(value, class_, path)
+        except StructureError as error:
+            self.faults += error.faults
+            return None
+
+    def _refuse_unknown_keys(self) -> None:
+        known = ["run", "populations", *COMPONENTS, "plugins", "extends"]
+        for key in self.tree:
+            if key not in known:
+                hint = did_you_mean(key, known)
+                message = f"unknown key{hint}{'' if hint else ';'} keys: {', '.join(known)}"
+                self.faults.append(Fault((key,), message))
+
+    def _chosen(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Chosen[Any] | None:
+        if not isinstance(table, Mapping) or not isinstance(table.get("name"), str):
+            message = f"expected the name of one of {', '.join(plugins.names(kind))}, or a table with name"
+            self.faults.append(Fault(path, f"{message}; found {found(table)}"))
+            return None
+        options = {key: value for key, value in table.items() if key != "name"}
+        try:
+            offer = plugins.find(kind, table["name"])
+        except ConfigurationError as error:
+            self.faults.append(Fault(path, str(error)))
+            return None
+        component = self._structured(options, offer.component, path)
+        return None if component is None else Chosen(table["name"], component, offer.source)
+
+    def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
+        tables = self.tree.get("populations")
+        if not isinstance(tables, Mapping) or len(tables) < 2:
+            self.faults.append(Fault(("populations",), "expected at least two tables [populations.ROLE]"))
+            return {}
+        return {role: self._population(role, table, choose) for role, table in tables.items()}
+
+    def _population(
+        self, role: str, table: Any, choose: Callable[..., Chosen[Any] | None]
+    ) -> PopulationConfig | None:
+        path = ("populations", role)
+        if not _ROLE.fullmatch(role) or role in _RESERVED_ROLES:
+            message = f"'{role}' is no name for a population: use lower-case letters, digits, - and _"
+            self.faults.append(Fault(path, message))
+        if not isinstance(table, Mapping):
+            self.faults.append(Fault(path, f"expected a table, found {found(table)}"))
+            return None
+        rest = {key: value for key, value in table.items() if key not in POPULATION_COMPONENTS}
+        size = self._structured(rest, _Size, path)
+        chosen = {
+            key: choose(kind, table.get(key), (*path, key)) for key, kind in POPULATION_COMPONENTS.items()
+        }
+        if size is None or None in chosen.values():
+            return None
+        return PopulationConfig(size.size, **cast("dict[str, Any]", chosen))
+
+
+class _Checks:
+    """What components demand of each other; skips what a fault found earlier leaves undecided."""
+
+    def __init__(
+        self,
+        populations: Mapping[str, PopulationConfig | None],
+        chosen: Mapping[str, Chosen[Any] | None],
+    ) -> None:
+        self.populations = {role: given for role, given in populations.items() if given is not None}
+        self.complete = bool(populations) and len(self.populations) == len(populations)
+        self.chosen = {key: given.component for key, given in chosen.items() if given is not None}
+
+    def faults(self) -> list[Fault]:
+        return [*self._sizes(), *self._collaboration(), *self._roles(), *self._record()]
+
+    def _sizes(self) -> Iterator[Fault]:
+        for role, population in self.populations.items():
+            check = functools.partial(population.evolver.component.check, population.size)
+            yield from _refusal(("populations", role, "size"), check)
+
+    def _collaboration(self) -> Iterator[Fault]:
+        strategy = self.chosen.get("collaboration")
+        if strategy is None:
+            return
+        counts: set[int] = set()
+        for size in dict.fromkeys(population.size for population in self.populations.values()):
+            try:
+                counts.add(strategy.size(size))
+            except ConfigurationError as error:
+                yield Fault(("collaboration",), str(error))
+                return
+        if len(self.populations) > 2 and len(counts) > 1:
+            message = f"populations of different sizes give different numbers of collaborators: {counts}"
+            yield Fault(("collaboration",), message)
+        if "aggregator" in self.chosen:
+            for count in sorted(counts):
+                check = functools.partial(self.chosen["aggregator"].check, count)
+                yield from _refusal(("aggregator",), check)
+
+    def _roles(self) -> Iterator[Fault]:
+        if not self.complete:
+            return
+        provided: list[str] = []
+        for role, population in self.populations.items():
+            encoder = population.encoder.component
+            path = ("populations", role, "encoder")
+            for needed in encoder.requires:
+                if needed not in provided:
+                    yield Fault(path, f"needs the role '{needed}' from a population before it")
+            for given in encoder.provides:
+                if given in provided:
+                    yield Fault(path, f"provides the role '{given}', which another population provides too")
+            provided += encoder.provides
+        for needed in getattr(self.chosen.get("simulator"), "requires", ()):
+            if needed not in provided:
+                yield Fault(("simulator",), f"needs the role '{needed}', which no population provides")
+
+    def _record(self) -> Iterator[Fault]:
+        if "simulator" in self.chosen and "objective" in self.chosen:
+            check = functools.partial(self.chosen["simulator"].check, self.chosen["objective"].record)
+            yield from _refusal(("objective",), check)
+
+
+def _refusal(path: tuple[str, ...], check: Callable[[], object]) -> Iterator[Fault]:
+    try:
+        check()
+    except ConfigurationError as error:
+        yield Fault(path, str(error))

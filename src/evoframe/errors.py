@@ -1,0 +1,33 @@
+"""What can go wrong, as types; every one of them is meant to be read by a person."""
+
+from __future__ import annotations
+
+__all__ = ["ConfigurationError", "EvoframeError", "InputError", "PluginError", "PluginWarning", "RunError"]
+
+
+class EvoframeError(Exception):
+    """Base of all errors that evoframe raises on purpose; the command line shows only their text."""
+
+
+class ConfigurationError(EvoframeError):
+    """A configuration, or an option of a component, that cannot be accepted.
+
+    A component raises it from ``check``-like methods with a message in the user's words; the core adds the
+    file and the key.
+    """
+
+
+class InputError(EvoframeError):
+    """A file given by the user that cannot be read, or that is not what it should be."""
+
+
+class PluginError(EvoframeError):
+    """A plugin that the configuration asks for cannot be used."""
+
+
+class RunError(EvoframeError):
+    """A run that cannot go on, or a run directory that cannot be used."""
+
+
+class PluginWarning(UserWarning):
+    """A plugin was skipped, or an observer was disabled; the program goes on without it."""

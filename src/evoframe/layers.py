@@ -1,0 +1,192 @@
+"""From presets, files and overrides to one tree of tables, knowing where each value came from."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from evoframe.errors import ConfigurationError
+from evoframe.plugins import did_you_mean
+
+__all__ = ["COMPONENTS", "POPULATION_COMPONENTS", "Layer", "Layers", "Tree", "preset_names", "read_layers"]
+
+Tree = dict[str, Any]
+
+COMPONENTS: Mapping[str, str] = {
+    "collaboration": "strategy",
+    "aggregator": "aggregator",
+    "simulator": "simulator",
+    "objective": "objective",
+    "executor": "executor",
+}
+"""Top-level key -> kind of the component that is chosen there."""
+
+POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "evolver"}
+"""Key within a population -> kind of the component that is chosen there."""
+
+_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
+_BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
+
+
+@attrs.frozen
+class Layer:
+    """One source of settings.
+
+    Attributes:
+        origin: What a person calls it: a file's name, ``preset 'paper'``, ``--set run.seed=2``.
+        tree: Its tables; components are tables with ``name``.
+    """
+
+    origin: str
+    tree: Tree
+
+
+@attrs.frozen
+class Layers:
+    """Settings in the order in which they override each other, the last one wins."""
+
+    layers: tuple[Layer, ...]
+
+    def merged(self) -> Tree:
+        """Return the tree of all layers together."""
+        result: Tree = {}
+        for layer in self.layers:
+            result = _merge(result, layer.tree, ())
+        return result
+
+    def origin(self, path: tuple[str, ...]) -> str:
+        """Return the origin of the value at *path*, or of the nearest table around it."""
+        for length in range(len(path), 0, -1):
+            for layer in reversed(self.layers):
+                if _has(layer.tree, path[:length]):
+                    return layer.origin
+        return self.layers[-1].origin
+
+
+def preset_names() -> list[str]:
+    """Return the names of the presets that come with evoframe."""
+    return sorted(
+        entry.name.removesuffix(".toml")
+        for entry in files("evoframe").joinpath("presets").iterdir()
+        if entry.name.endswith(".toml")
+    )
+
+
+def read_layers(source: str | Path, tables: Iterable[Layer] = (), overrides: Iterable[str] = ()) -> Layers:
+    """Read a preset or file with what it extends, and put the *tables* and the *overrides* on top.
+
+    Args:
+        source: Name of a preset, or path of a TOML file.
+        tables: Further layers.
+        overrides: ``key=value`` with a dotted key and a TOML value, as given to ``--set``.
+
+    Raises:
+        ConfigurationError: Something cannot be read; says what and where.
+    """
+    layers = [*_chain(str(source), Path(), ()), *tables, *(_override(text) for text in overrides)]
+    return Layers(tuple(Layer(layer.origin, _with_component_tables(layer)) for layer in layers))
+
+
+def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:
+    """Return the layer of *source*, preceded by those that it extends."""
+    origin, text, folder = _read(source, relative_to)
+    if origin in seen:
+        raise ConfigurationError(f"{origin}: extends itself: {' -> '.join([*seen, origin])}")
+    try:
+        tree = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigurationError(f"{origin}: not valid TOML: {error}") from error
+    tree.pop("provenance", None)  # what a run wrote about itself is no setting
+    base = tree.pop("extends", "paper" if origin != "preset 'paper'" else False)
+    if base is False:
+        return [Layer(origin, tree)]
+    if not isinstance(base, str):
+        raise ConfigurationError(f"{origin}: extends: expected the name of a preset or file, or false")
+    return [*_chain(base, folder, (*seen, origin)), Layer(origin, tree)]
+
+
+def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
+    """Return origin, text and folder of a preset or file."""
+    if source in preset_names():
+        text = files("evoframe").joinpath("presets", f"{source}.toml").read_text(encoding="utf-8")
+        return f"preset '{source}'", text, Path()
+    path = relative_to / source
+    if not source.endswith(".toml") and not path.exists():
+        known = preset_names()
+        raise ConfigurationError(
+            f"there is no preset '{source}'{did_you_mean(source, known)} presets: {', '.join(known)}; "
+            "a file needs the ending .toml"
+        )
+    try:
+        return str(path), path.read_text(encoding="utf-8"), path.parent
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path}: not valid TOML: it is not UTF-8 text") from error
+
+
+def _override(text: str) -> Layer:
+    key, equals, value = text.partition("=")
+    key = key.strip()
+    if not equals or not _KEY.fullmatch(key):
+        raise ConfigurationError(f"--set {text}: expected key=value, as in aggregator=hm or run.seed=2")
+    tree: Any = _value(text, value.strip())
+    for part in reversed(key.split(".")):
+        tree = {part: tree}
+    return Layer(f"--set {text}", tree)
+
+
+def _value(text: str, value: str) -> Any:
+    if _BARE_WORD.fullmatch(value) and value not in ("true", "false", "inf", "nan"):
+        return value
+    try:
+        tree = tomllib.loads(f"value = {value}")
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigurationError(f"--set {text}: the right side is no TOML value: {error}") from error
+    if list(tree) != ["value"]:
+        raise ConfigurationError(f"--set {text}: the right side must be one TOML value")
+    return tree["value"]
+
+
+def _is_component(path: tuple[str, ...]) -> bool:
+    if len(path) == 1:
+        return path[0] in COMPONENTS
+    return len(path) == 3 and path[0] == "populations" and path[2] in POPULATION_COMPONENTS
+
+
+def _with_component_tables(layer: Layer) -> Tree:
+    def convert(value: Any, path: tuple[str, ...]) -> Any:
+        if _is_component(path) and isinstance(value, str):
+            return {"name": value}
+        if isinstance(value, dict) and not _is_component(path):
+            return {key: convert(inner, (*path, key)) for key, inner in value.items()}
+        return value
+
+    converted: Tree = convert(layer.tree, ())
+    return converted
+
+
+def _merge(base: Any, over: Any, path: tuple[str, ...]) -> Any:
+    if not (isinstance(base, dict) and isinstance(over, dict)):
+        return over
+    if _is_component(path) and "name" in over and over["name"] != base.get("name"):
+        return over  # the options of another component must not linger
+    merged = dict(base)
+    for key, value in over.items():
+        merged[key] = _merge(base[key], value, (*path, key)) if key in base else value
+    return merged
+
+
+def _has(tree: Any, path: tuple[str, ...]) -> bool:
+    for part in path:
+        key = part.split("[", 1)[0]
+        if not isinstance(tree, dict) or key not in tree:
+            return False
+        tree = tree[key]
+    return True

@@ -1,0 +1,155 @@
+"""One population of a run: its genomes, their fitness, and its history in a few numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe.errors import RunError
+from evoframe.protocols import Encoder, EvolverRun, Network
+from evoframe.values import Member, PopulationReport
+
+__all__ = ["Population"]
+
+
+@attrs.define
+class Population:
+    """A population that evolves one role.
+
+    Attributes:
+        name: The role.
+        encoder: Decodes its networks.
+        evolver: Evolves its genomes.
+        rng: The stream with which its collaborators are chosen.
+        generation: How often it has reproduced.
+        genomes: The current genomes.
+        members: What is known of each of them.
+    """
+
+    name: str
+    encoder: Encoder
+    evolver: EvolverRun
+    rng: np.random.Generator
+    generation: int = -1
+    genomes: Sequence[Any] = ()
+    members: tuple[Member, ...] = ()
+    _networks: dict[int, Network] = attrs.field(factory=dict, init=False)
+    _best_so_far: float | None = attrs.field(default=None, init=False)
+    _lowest: float | None = attrs.field(default=None, init=False)
+    _champion: Member | None = attrs.field(default=None, init=False)
+
+    def reproduce(self) -> None:
+        """Replace the genomes by the next ones; at first, by the initial ones."""
+        self.genomes = self.evolver.ask()
+        self.members = tuple(self.evolver.members())
+        self.generation += 1
+        self._networks.clear()
+
+    def network(self, position: int) -> Network:
+        """Return the network that the genome at *position* expresses."""
+        if position not in self._networks:
+            self._networks[position] = self.evolver.express(self.genomes[position])
+        return self._networks[position]
+
+    def judge(self, fitness: Sequence[float | None], floor: float | None) -> None:
+        """Take the fitness of all genomes.
+
+        Args:
+            fitness: One value a genome; ``None`` where a simulation diverged. Such a genome gets the lowest
+                fitness among the clean ones of this turn, or else the lowest that the population has had.
+            floor: What it gets if there has been no clean one at all: the lowest score of this turn.
+
+        Raises:
+            RunError: There is not even such a score.
+        """
+        lowest = min((value for value in fitness if value is not None), default=self._lowest)
+        if lowest is None:
+            lowest = floor
+        if lowest is None:
+            raise RunError(
+                "every simulation of the initial meeting diverged, so there is nothing to compare; "
+                "check the simulator's options (time step, stiffness, density)"
+            )
+        self._lowest = lowest if self._lowest is None else min(lowest, self._lowest)
+        told = np.array([lowest if value is None else value for value in fitness])
+        self.evolver.tell(told, {})
+        self._note_members(told, [value is None for value in fitness])
+        self._note_champion()
+
+    def fittest(self) -> int:
+        """Return the position of the fittest member; a diverged one only if there is no other."""
+        return max(range(len(self.members)), key=lambda position: (_rank(self.members[position]), -position))
+
+    def report(self) -> PopulationReport:
+        """Return what happened to this population in its latest turn; it must have been judged."""
+        if self._champion is None or self._best_so_far is None:
+            raise RunError(f"population '{self.name}' was not judged yet")
+        fitness = [_fitness(member) for member in self.members]
+        return PopulationReport(
+            population=self.name,
+            generation=self.generation,
+            members=self.members,
+            best=fitness[self.fittest()],
+            best_so_far=self._best_so_far,
+            champion=_fitness(self._champion),
+            mean=math.fsum(fitness) / len(fitness),
+        )
+
+    def state(self) -> dict[str, Any]:
+        """Return everything needed to continue, as JSON values."""
+        return {
+            "evolver": self.evolver.state(),
+            "rng": self.rng.bit_generator.state,
+            "generation": self.generation,
+            "diverged": [member.diverged for member in self.members],
+            "best_so_far": self._best_so_far,
+            "lowest": self._lowest,
+            "champion": attrs.asdict(self._champion) if self._champion else None,
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Continue from what :meth:`state` returned."""
+        self.evolver.restore(state["evolver"])
+        self.rng.bit_generator.state = state["rng"]
+        self.generation = state["generation"]
+        self.genomes = self.evolver.genomes()
+        self._networks.clear()
+        self.members = tuple(
+            attrs.evolve(member, diverged=diverged)
+            for member, diverged in zip(self.evolver.members(), state["diverged"], strict=True)
+        )
+        self._best_so_far = state["best_so_far"]
+        self._lowest = state["lowest"]
+        self._champion = Member(**state["champion"]) if state["champion"] else None
+
+    def _note_members(self, fitness: NDArray[np.float64], diverged: Sequence[bool]) -> None:
+        self.members = tuple(
+            attrs.evolve(member, fitness=float(value), diverged=failed)
+            for member, value, failed in zip(self.evolver.members(), fitness, diverged, strict=True)
+        )
+
+    def _note_champion(self) -> None:
+        """Let the fittest challenge the champion at the champion's latest fitness (as the authors do)."""
+        best = self.members[self.fittest()]
+        if self._best_so_far is None or _fitness(best) > self._best_so_far:
+            self._best_so_far = _fitness(best)
+        latest = {member.id: member for member in self.members}
+        if self._champion is not None:
+            self._champion = latest.get(self._champion.id, self._champion)
+        if self._champion is None or _rank(best) > _rank(self._champion):
+            self._champion = best
+
+
+def _fitness(member: Member) -> float:
+    if member.fitness is None:
+        raise RunError(f"genome {member.id} was not judged yet")
+    return member.fitness
+
+
+def _rank(member: Member) -> tuple[bool, float]:
+    return not member.diverged, _fitness(member)

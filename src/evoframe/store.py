@@ -1,0 +1,269 @@
+"""A run's directory: configuration, database, champion; one process writes, ordinary tools read."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sqlite3
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evoframe.errors import InputError
+from evoframe.values import BestPair, Design, Pair, PopulationReport, Turn
+
+__all__ = ["FORMAT", "Store", "design_from_json", "design_to_json", "read_champion", "write_json"]
+
+FORMAT = 1
+"""Version of the run directory and of the champion file."""
+
+_SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
+
+_SCHEMA = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE turns (
+    turn INTEGER, population TEXT, generation INTEGER NOT NULL,
+    best REAL NOT NULL, best_so_far REAL NOT NULL, champion REAL NOT NULL, mean REAL NOT NULL,
+    PRIMARY KEY (turn, population)
+) WITHOUT ROWID;
+CREATE TABLE individuals (
+    turn INTEGER, population TEXT, position INTEGER, genome INTEGER NOT NULL, species INTEGER,
+    genome_size INTEGER NOT NULL, age INTEGER NOT NULL, fitness REAL NOT NULL, diverged INTEGER NOT NULL,
+    PRIMARY KEY (turn, population, position)
+) WITHOUT ROWID;
+CREATE TABLE pairs (
+    turn INTEGER, pair INTEGER, {roles}, score REAL, diverged_at INTEGER,
+    PRIMARY KEY (turn, pair)
+) WITHOUT ROWID;
+CREATE TABLE champions (turn INTEGER PRIMARY KEY, score REAL NOT NULL, champion TEXT NOT NULL);
+CREATE TABLE state (part TEXT PRIMARY KEY, turn INTEGER NOT NULL, state TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE workload (
+    turn INTEGER PRIMARY KEY, pairs INTEGER NOT NULL, simulations INTEGER NOT NULL, seconds REAL NOT NULL
+);
+"""
+
+
+class Store:
+    """The directory of a run that is being written.
+
+    Args:
+        directory: The run's directory; made if missing, and it must be empty.
+        roles: Names of the populations, in order.
+        simulation: What is needed to simulate the champion again, for its file.
+
+    Raises:
+        InputError: The directory is not empty, or cannot be written.
+    """
+
+    def __init__(self, directory: Path, roles: list[str], simulation: Mapping[str, Any]) -> None:
+        self.directory = directory
+        self.simulation = simulation
+        _make_empty(directory)
+        self._database = sqlite3.connect(directory / "run.db", isolation_level=None, check_same_thread=False)
+        self._database.execute("PRAGMA journal_mode = WAL")
+        self._database.execute("PRAGMA synchronous = NORMAL")
+        with self._transaction():
+            columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
+            for statement in _SCHEMA.format(roles=columns).split(";"):
+                self._database.execute(statement)
+            self._database.execute("INSERT INTO meta VALUES ('format', ?)", (str(FORMAT),))
+        self._synced = time.monotonic()
+
+    def save_config(self, text: str) -> None:
+        """Write the resolved configuration."""
+        _write_atomically(self.directory / "config.toml", text)
+
+    def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
+        """Save a turn and the state after it, both or neither; then the champion, if it is a new one.
+
+        Args:
+            turn: The turn.
+            state: Part -> JSON values; parts that did not change may be left out.
+        """
+        champion = champion_document(turn.best_pair, self.simulation) if turn.best_pair else None
+        with self._transaction():
+            self._insert("turns", (_turn_row(turn.index, report) for report in turn.reports))
+            for report in turn.reports:
+                self._insert("individuals", _individual_rows(turn.index, report))
+            self._insert("pairs", _pair_rows(turn.index, turn.pairs))
+            work = turn.workload
+            self._insert("workload", [(turn.index, work.pairs, work.simulations, work.seconds)])
+            if champion:
+                self._insert("champions", [(turn.index, champion["displacement"], _json(champion))])
+            for part, values in state.items():
+                row = (part, turn.index, _json(values))
+                self._database.execute("INSERT OR REPLACE INTO state VALUES (?, ?, ?)", row)
+        if champion:
+            write_json(self.directory / "champion.json", champion)
+        self._synchronise()
+
+    def finish(self, result: Mapping[str, Any]) -> None:
+        """Note the final figures."""
+        with self._transaction():
+            for key, value in result.items():
+                row = (key, _json(value))
+                self._database.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", row)
+
+    def close(self) -> None:
+        """Leave one self-contained database file."""
+        self._database.execute("PRAGMA journal_mode = DELETE")
+        self._database.close()
+
+    def _insert(self, table: str, rows: Iterator[tuple[Any, ...]] | list[tuple[Any, ...]]) -> None:
+        listed = list(rows)
+        if listed:
+            marks = ", ".join("?" * len(listed[0]))
+            self._database.executemany(f"INSERT INTO {table} VALUES ({marks})", listed)  # noqa: S608 - our names
+
+    @contextlib.contextmanager
+    def _transaction(self) -> Iterator[None]:
+        self._database.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+        except BaseException:
+            self._database.execute("ROLLBACK")
+            raise
+        self._database.execute("COMMIT")
+
+    def _synchronise(self) -> None:
+        if time.monotonic() - self._synced >= _SYNC_INTERVAL:
+            self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
+            self._synced = time.monotonic()
+
+
+def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all that is needed to simulate the champion again, and nothing of this machine, as JSON."""
+    return {
+        "format": FORMAT,
+        "displacement": pair.score,
+        "turn": pair.turn,
+        "genome_ids": dict(pair.genome_ids),
+        "simulation": simulation,
+        "design": design_to_json(pair.design),
+        "genomes": dict(pair.genomes),
+    }
+
+
+def design_to_json(design: Design) -> dict[str, Any]:
+    """Return a design as JSON values, exact to the last bit."""
+    return {
+        role: {"dtype": array.dtype.name, "shape": list(array.shape), "values": array.ravel().tolist()}
+        for role, array in design.roles.items()
+    }
+
+
+def design_from_json(document: Any, origin: str) -> Design:
+    """Return the design that :func:`design_to_json` described.
+
+    Raises:
+        InputError: It is not such a document; the message begins with *origin*.
+    """
+    try:
+        roles = {
+            str(role): np.array(given["values"], dtype=_dtype(given["dtype"])).reshape(given["shape"])
+            for role, given in document.items()
+        }
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
+        raise InputError(f"{origin}: design: not as evoframe writes it: {error}") from error
+    return Design(roles)
+
+
+def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
+    """Return the design of a ``champion.json``, what it was simulated with, and its displacement.
+
+    Raises:
+        InputError: The file cannot be read, or is no champion.
+    """
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not valid JSON: {error}") from error
+    if (
+        not isinstance(document, dict)
+        or not {"format", "design", "simulation", "displacement"} <= document.keys()
+    ):
+        raise InputError(f"{path}: this JSON is no champion of evoframe; expected a run's champion.json")
+    if document["format"] != FORMAT:
+        raise InputError(f"{path}: format {document['format']}, but this evoframe reads format {FORMAT}")
+    if not isinstance(document["displacement"], float) or not isinstance(document["simulation"], dict):
+        raise InputError(f"{path}: displacement or simulation: not as evoframe writes it")
+    return design_from_json(document["design"], str(path)), document["simulation"], document["displacement"]
+
+
+def write_json(path: Path, document: Any) -> None:
+    """Write JSON so that a reader sees the old file or the new one, never a part."""
+    _write_atomically(path, _json(document) + "\n")
+
+
+def _dtype(name: Any) -> type[np.generic]:
+    types: dict[Any, type[np.generic]] = {"uint8": np.uint8, "int64": np.int64, "float64": np.float64}
+    if name not in types:
+        raise ValueError(f"unknown dtype {name!r}")
+    return types[name]
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False)
+
+
+def _make_empty(directory: Path) -> None:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        occupied = any(directory.iterdir())
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+    if occupied:
+        raise InputError(f"{directory}: is not empty; choose another directory with --out")
+
+
+def _write_atomically(path: Path, text: str) -> None:
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def _turn_row(turn: int, report: PopulationReport) -> tuple[Any, ...]:
+    return (
+        turn,
+        report.population,
+        report.generation,
+        report.best,
+        report.best_so_far,
+        report.champion,
+        report.mean,
+    )
+
+
+def _individual_rows(turn: int, report: PopulationReport) -> Iterator[tuple[Any, ...]]:
+    for position, member in enumerate(report.members):
+        yield (
+            turn,
+            report.population,
+            position,
+            member.id,
+            member.species,
+            member.genome_size,
+            member.age,
+            member.fitness,
+            int(member.diverged),
+        )
+
+
+def _pair_rows(turn: int, pairs: tuple[Pair, ...]) -> Iterator[tuple[Any, ...]]:
+    for index, pair in enumerate(pairs):
+        yield (turn, index, *pair.genomes, pair.score, pair.diverged_at)

@@ -1,0 +1,152 @@
+"""The laws of aggregators."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from hypothesis import strategies as st
+
+from evoframe.protocols import Aggregator
+from evoframe.testing.components import ComponentContract
+from evoframe.testing.laws import accepted, at_most, for_all, refusal, same_bits
+from evoframe.values import Scores
+
+__all__ = ["AggregatorContract"]
+
+LARGEST = 1e100
+EXEMPTIBLE = ("bounded", "idempotent", "monotone")
+
+
+class AggregatorContract(ComponentContract[Aggregator]):
+    """The laws of an :class:`~evoframe.Aggregator`.
+
+    Attributes:
+        counts: Numbers of collaborators to try; those that ``check`` refuses are not aggregated.
+    """
+
+    protocol = Aggregator
+    counts: ClassVar[range] = range(-1, 31)
+
+    def test_numbers_of_collaborators_are_refused_by_a_configuration_error(self) -> None:
+        """``check`` raises nothing else, says why, refuses 0 and less, and accepts something."""
+        assert "" not in [refusal(self.component.check, n) for n in self.counts], "a refusal says nothing"
+        counts = accepted(self.component.check, self.counts)
+        assert counts, f"check() refuses every n in {self.counts}"
+        assert min(counts) >= 1, f"check() accepts {min(counts)} collaborators"
+
+    def test_the_result_is_finite(self) -> None:
+        """Finite scores up to 1e100, however small, give a finite float."""
+
+        def law(scores: list[float]) -> None:
+            result = self.component.aggregate(_array(scores))
+            assert isinstance(result, float), f"the result is a {type(result).__name__}, not a float"
+            assert math.isfinite(result)
+
+        for_all(law, scores=self.scores(-LARGEST, LARGEST))
+
+    def test_the_order_of_the_scores_is_irrelevant(self) -> None:
+        """To the last bit."""
+
+        def law(scores: list[float], random: Any) -> None:
+            shuffled = random.sample(scores, len(scores))
+            assert self._bits(scores) == self._bits(shuffled)
+
+        for_all(law, scores=self.scores(-LARGEST, LARGEST), random=st.randoms(use_true_random=False))
+
+    def test_the_scores_are_left_alone(self) -> None:
+        """An array that is handed over is not changed."""
+
+        def law(scores: list[float]) -> None:
+            given = _array(scores)
+            self.component.aggregate(given)
+            assert same_bits(given, _array(scores))
+
+        for_all(law, scores=self.scores(-LARGEST, LARGEST))
+
+    def test_the_domain_is_a_range(self) -> None:
+        """Two numbers, the smaller one first."""
+        low, high = self.component.domain
+        assert low <= high
+
+    def test_exemptions_name_a_law_and_a_reason(self) -> None:
+        """Whoever breaks a law says which, and why."""
+        for law, reason in self._exemptions().items():
+            assert law in EXEMPTIBLE, f"there is no law '{law}' to be exempt from; laws: {EXEMPTIBLE}"
+            assert reason.strip(), f"say why the component is exempt from '{law}'"
+
+    def test_the_result_lies_within_the_scores(self) -> None:
+        """The law ``bounded``: min <= result <= max."""
+
+        def law(scores: list[float]) -> None:
+            result = self.component.aggregate(_array(scores))
+            assert at_most(min(scores), result)
+            assert at_most(result, max(scores))
+
+        self._unless_exempt("bounded", law, scores=self.scores(*self._domain()))
+
+    def test_equal_scores_give_that_score(self) -> None:
+        """The law ``idempotent``."""
+
+        def law(score: float, n: int) -> None:
+            result = self.component.aggregate(_array([score] * n))
+            assert at_most(score, result)
+            assert at_most(result, score)
+
+        self._unless_exempt("idempotent", law, score=_floats(*self._domain()), n=self.sizes())
+
+    def test_the_result_is_no_less_when_a_score_grows(self) -> None:
+        """The law ``monotone``."""
+        _, high = self._domain()
+
+        def law(scores: list[float], data: st.DataObject) -> None:
+            index = data.draw(st.integers(0, len(scores) - 1), label="index of the score that grows")
+            grown = [*scores]
+            grown[index] = data.draw(_floats(scores[index], high), label="what it grows to")
+            before = self.component.aggregate(_array(scores))
+            after = self.component.aggregate(_array(grown))
+            assert at_most(before, after)
+
+        self._unless_exempt("monotone", law, scores=self.scores(*self._domain()), data=st.data())
+
+    def sizes(self) -> st.SearchStrategy[int]:
+        """Return the numbers of scores that the component accepts."""
+        return st.sampled_from(accepted(self.component.check, self.counts))
+
+    def scores(self, low: float, high: float) -> st.SearchStrategy[list[float]]:
+        """Return lists of scores from *low* to *high* in the accepted numbers."""
+        score = _floats(low, high)
+        return self.sizes().flatmap(lambda n: st.lists(score, min_size=n, max_size=n))
+
+    def _domain(self) -> tuple[float, float]:
+        low, high = self.component.domain
+        return max(low, -LARGEST), min(high, LARGEST)
+
+    def _bits(self, scores: list[float]) -> str:
+        return self.component.aggregate(_array(scores)).hex()
+
+    def _exemptions(self) -> Mapping[str, str]:
+        exemptions: Mapping[str, str] = getattr(self.component, "exempt_from", {})
+        return exemptions
+
+    def _unless_exempt(self, name: str, law: Any, **strategies: st.SearchStrategy[Any]) -> None:
+        reason = self._exemptions().get(name)
+        if reason is None:
+            for_all(law, **strategies)
+        else:
+            assert reason.strip(), f"say why the component is exempt from '{name}'"
+
+
+def _array(scores: list[float]) -> Scores:
+    return np.array(scores, dtype=np.float64)
+
+
+def _floats(low: float, high: float) -> st.SearchStrategy[float]:
+    """Return numbers of all magnitudes, and often of one: that is where averages differ the least."""
+    plain = st.floats(low, high)
+    like_displacements = [
+        value for value in (-0.01, -1e-6, 0.0, 1e-6, 0.004, 0.005, 1.0) if low <= value <= high
+    ]
+    return plain | st.sampled_from(like_displacements) if like_displacements else plain

@@ -1,0 +1,188 @@
+"""The laws of simulators."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import attrs
+import numpy as np
+import pytest
+
+from evoframe.errors import ConfigurationError
+from evoframe.protocols import Simulator
+from evoframe.testing.components import ComponentContract
+from evoframe.testing.laws import same_outcome
+from evoframe.values import Design, Outcome, Record
+
+__all__ = ["SimulatorContract"]
+
+
+class SimulatorContract(ComponentContract[Simulator]):
+    """The laws of a :class:`~evoframe.Simulator`.
+
+    A subclass overrides :meth:`designs`, and :meth:`diverging` if its simulations can diverge.
+    """
+
+    protocol = Simulator
+
+    def designs(self) -> Sequence[Design]:
+        """Return at least three designs, best with some whose keys are equal though they differ."""
+        raise NotImplementedError("override designs() with at least three examples")
+
+    def diverging(self) -> Sequence[Design]:
+        """Return designs whose simulation diverges."""
+        return []
+
+    def record(self) -> Record:
+        """Return what is recorded; every track after every step, unless overridden."""
+        return Record(tuple(self.component.tracks))
+
+    def test_there_are_three_examples_with_the_required_roles(self) -> None:
+        """Otherwise the other tests say little."""
+        assert len(self.designs()) >= 3
+        for design in [*self.designs(), *self.diverging()]:
+            assert set(self.component.requires) <= set(design.roles)
+
+    def test_a_record_of_its_tracks_is_accepted(self) -> None:
+        """There is at least one."""
+        assert self.component.tracks
+        self.component.check(self.record())
+
+    def test_an_unknown_track_is_refused(self) -> None:
+        """Before anything runs."""
+        with pytest.raises(ConfigurationError, match="no-such-track"):
+            self.component.check(Record(("no-such-track",)))
+
+    def test_a_sample_after_the_end_is_refused(self) -> None:
+        """Before anything runs."""
+        with pytest.raises(ConfigurationError):
+            self.component.check(attrs.evolve(self.record(), samples=(10**9,)))
+
+    def test_each_design_has_an_outcome(self) -> None:
+        """No design, no outcome."""
+        assert len(self._simulate(self.designs())) == len(self.designs())
+        assert len(self._simulate([])) == 0
+
+    def test_outcomes_have_the_promised_arrays(self) -> None:
+        """One row a sample in each of them."""
+        for outcome in self._simulate(self._all()):
+            samples = len(outcome.steps)
+            assert outcome.steps.dtype == np.int64
+            assert outcome.times.dtype == np.float64
+            assert outcome.times.shape == (samples,)
+            assert set(outcome.tracks) == set(self.record().tracks)
+            for track in outcome.tracks.values():
+                assert track.dtype == np.float64
+                assert track.shape == (samples, 3)
+
+    def test_time_goes_on(self) -> None:
+        """From sample to sample, in steps and in seconds."""
+        for outcome in self._simulate(self._all()):
+            assert (np.diff(outcome.steps) > 0).all()
+            assert (np.diff(outcome.times) > 0).all()
+
+    def test_positions_are_finite_unless_the_simulation_diverged(self) -> None:
+        """Nothing is hidden: who has a NaN says at which step it came."""
+        for outcome in self._simulate(self._all()):
+            sound = outcome.steps < (np.inf if outcome.diverged_at is None else outcome.diverged_at)
+            for track in outcome.tracks.values():
+                assert np.isfinite(track[sound]).all()
+
+    def test_divergence_is_said(self) -> None:
+        """The step is named, and from there on positions are NaN."""
+        for outcome in self._simulate(self.diverging()):
+            assert outcome.diverged_at is not None
+            lost = outcome.steps >= outcome.diverged_at
+            for track in outcome.tracks.values():
+                assert np.isnan(track[lost]).all()
+
+    def test_a_simulation_can_be_repeated(self) -> None:
+        """To the last bit."""
+        _assert_same(self._simulate(self._all()), self._simulate(self._all()))
+
+    def test_a_batch_equals_its_members_one_by_one(self) -> None:
+        """To the last bit, in any order, and beside a design that diverges."""
+        together = self._simulate(self._all())
+        _assert_same(together, [self._simulate([design])[0] for design in self._all()])
+        _assert_same(together, self._simulate(self._all()[::-1])[::-1])
+
+    def test_any_number_of_threads_may_call_at_once(self) -> None:
+        """To the last bit."""
+        designs = self._all() * 4
+        with ThreadPoolExecutor(4) as pool:
+            outcomes = list(pool.map(lambda design: self._simulate([design])[0], designs))
+        _assert_same(outcomes, list(self._simulate(self._all())) * 4)
+
+    def test_recording_more_tracks_changes_nothing(self) -> None:
+        """Each track alone is the same as among the others."""
+        whole = self._simulate(self._all())
+        for track in self.record().tracks:
+            alone = self._simulate(self._all(), attrs.evolve(self.record(), tracks=(track,)))
+            for one, all_ in zip(alone, whole, strict=True):
+                assert same_outcome(one, attrs.evolve(all_, tracks={track: all_.tracks[track]}))
+
+    def test_recording_more_samples_changes_nothing(self) -> None:
+        """One sample alone is the same as among the others."""
+        whole = self._simulate(self._all())
+        last = min(len(outcome.steps) for outcome in whole) - 1
+        for sample in sorted({0, last // 2, last}):
+            record = attrs.evolve(self.record(), samples=(sample,))
+            for one, all_ in zip(self._simulate(self._all(), record), whole, strict=True):
+                assert same_outcome(one, _rows(all_, slice(sample, sample + 1)))
+
+    def test_the_initial_state_is_one_more_row(self) -> None:
+        """In front of the others, before the first step."""
+        whole = self._simulate(self._all(), attrs.evolve(self.record(), initial=False))
+        more = self._simulate(self._all(), attrs.evolve(self.record(), initial=True))
+        for one, all_ in zip(more, whole, strict=True):
+            assert one.steps[0] == 0
+            assert one.times[0] == 0
+            assert same_outcome(_rows(one, slice(1, None)), all_)
+
+    def test_sampling_more_often_changes_nothing(self) -> None:
+        """Where two records have a step in common, they agree."""
+        often = self._simulate(self._all(), Record(self.record().tracks))
+        every = float(often[0].times[-1]) / 3
+        seldom = self._simulate(self._all(), Record(self.record().tracks, every=every))
+        for one, all_ in zip(seldom, often, strict=True):
+            assert set(one.steps) <= set(all_.steps)
+            assert same_outcome(one, _rows(all_, np.isin(all_.steps, one.steps)))
+
+    def test_keys_are_bytes_and_equal_for_equal_designs(self) -> None:
+        """A copy of a design has its key."""
+        for design in self._all():
+            copy = Design({role: array.copy() for role, array in design.roles.items()})
+            key = self.component.key(design, self.record())
+            assert isinstance(key, bytes)
+            assert key == self.component.key(copy, self.record())
+
+    def test_equal_keys_mean_equal_outcomes(self) -> None:
+        """Whatever a key leaves out cannot matter; what is recorded is part of it."""
+        known: dict[bytes, Outcome] = {}
+        shorter = attrs.evolve(self.record(), samples=(0,))
+        for record in (self.record(), shorter):
+            for design, outcome in zip(self._all(), self._simulate(self._all(), record), strict=True):
+                first = known.setdefault(self.component.key(design, record), outcome)
+                assert same_outcome(first, outcome)
+
+    def _all(self) -> list[Design]:
+        return [*self.designs(), *self.diverging()]
+
+    def _simulate(self, designs: Sequence[Design], record: Record | None = None) -> Sequence[Outcome]:
+        return self.component.simulate(designs, record or self.record())
+
+
+def _assert_same(outcomes: Sequence[Outcome], others: Sequence[Outcome]) -> None:
+    for one, other in zip(outcomes, others, strict=True):
+        assert same_outcome(one, other)
+
+
+def _rows(outcome: Outcome, rows: slice | np.ndarray) -> Outcome:
+    """Return *outcome* with some of its samples."""
+    return attrs.evolve(
+        outcome,
+        steps=outcome.steps[rows],
+        times=outcome.times[rows],
+        tracks={name: track[rows] for name, track in outcome.tracks.items()},
+    )

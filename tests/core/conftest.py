@@ -1,0 +1,34 @@
+"""The toy plugin, and configurations made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import toys
+
+from evoframe.config import RunConfig, load_config
+from evoframe.plugins import Plugins, Source
+
+
+@pytest.fixture
+def toy_plugins() -> Plugins:
+    plugins = Plugins()
+    plugins.add(toys, Source("toy-box", "1.0", "toys"))
+    return plugins
+
+
+@pytest.fixture
+def toy_file(tmp_path: Path) -> Path:
+    path = tmp_path / "toy.toml"
+    path.write_text(toys.CONFIGURATION)
+    return path
+
+
+@pytest.fixture
+def toy_config(toy_plugins: Plugins, toy_file: Path) -> Callable[..., RunConfig]:
+    def load(*overrides: str) -> RunConfig:
+        return load_config(toy_file, overrides=overrides, plugins=toy_plugins)
+
+    return load

@@ -1,0 +1,171 @@
+"""What the solver refuses, and in which words."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import evoframe_libvox
+from evoframe_libvox import Model
+
+ModelMaker = Callable[..., Model]
+CANVAS = (2, 1, 2)
+NAN, INF = float("nan"), float("inf")
+
+
+def one_body(code: int = 1) -> tuple[Any, Any]:
+    return np.full((1, *CANVAS), code, np.uint8), np.zeros((1, *CANVAS))
+
+
+@pytest.mark.parametrize(
+    ("field", "values", "words"),
+    [
+        ("voxel_size", [0.0, -0.05, NAN, INF, 1e-7], "between 1e-6 and 1e6 m"),
+        ("time_step_fraction", [0.0, -0.9, 1.0001, NAN], "above 0 and at most 1"),
+        ("duration", [0.0, -1.0, NAN, INF], "positive"),
+        ("temperature_amplitude", [NAN, INF, -INF], "finite"),
+        ("period", [0.0, -0.25, NAN, INF], "positive"),
+        ("bond_damping", [-1e-9, NAN, INF], "not negative"),
+        ("slow_damping", [-1e-9, NAN, INF], "not negative"),
+        ("collision_horizon", [0.99, 4.01, NAN], "between 1 and 4"),
+        ("collision_list_factor", [0.99, 2.01, NAN], "between 1 and 2"),
+    ],
+)
+def test_settings_out_of_range(small_model: ModelMaker, field: str, values: list[float], words: str) -> None:
+    for value in values:
+        with pytest.raises(ValueError, match=rf"^{field} must be .*{words}.*, got {value}$"):
+            small_model(CANVAS, **{field: value})
+
+
+@pytest.mark.parametrize(
+    ("field", "values", "words"),
+    [
+        ("youngs_modulus", [0.0, -1.0, NAN, INF], "positive and finite"),
+        ("poisson_ratio", [-0.01, 0.5, NAN], "at least 0 and below 0.5"),
+        ("density", [0.0, -1.0, NAN, INF], "positive and finite"),
+        ("expansion", [NAN, INF, 1e308], "finite"),
+    ],
+)
+def test_materials_out_of_range(
+    small_model: ModelMaker, material: Callable[..., object], field: str, values: list[float], words: str
+) -> None:
+    for value in values:
+        message = rf"^{field}.* must be .*{words}.*, got {value} for material 9$".replace("+", r"\+")
+        with pytest.raises(ValueError, match=message):
+            small_model(CANVAS, palette={1: material(), 9: material(**{field: value})})
+
+
+@pytest.mark.parametrize("canvas", [(0, 1, 1), (1, -1, 1), (1, 1, 0)])
+def test_canvas_without_cells(small_model: ModelMaker, canvas: tuple[int, int, int]) -> None:
+    with pytest.raises(ValueError, match="at least 1 cell along each axis"):
+        small_model(canvas, clamped=np.zeros(tuple(max(n, 0) for n in canvas), bool))
+
+
+def test_canvas_too_large(small_model: ModelMaker) -> None:
+    with pytest.raises(ValueError, match=r"at most 2\^24 cells in all, got \(4096, 4097, 1\)"):
+        small_model((4096, 4097, 1))
+
+
+@pytest.mark.parametrize("code", [0, -1, 256])
+def test_palette_codes_out_of_range(
+    small_model: ModelMaker, material: Callable[..., object], code: int
+) -> None:
+    with pytest.raises(ValueError, match=f"codes from 1 to 255, got {code}"):
+        small_model(CANVAS, palette={code: material()})
+
+
+def test_empty_palette(small_settings: Callable[..., Any]) -> None:
+    with pytest.raises(ValueError, match="at least one material"):
+        Model(CANVAS, {}, small_settings(), np.zeros(CANVAS, bool))
+
+
+def test_clamped_must_be_a_mask(small_settings: Callable[..., Any], palette: dict[int, Any]) -> None:
+    with pytest.raises(ValueError, match=r"clamped must have the shape \[2, 1, 2\], got \[2, 1\]"):
+        Model(CANVAS, palette, small_settings(), np.zeros((2, 1), bool))
+    with pytest.raises(ValueError, match="clamped must be bool, got float64"):
+        Model(CANVAS, palette, small_settings(), np.zeros(CANVAS))
+
+
+def test_unknown_material_names_the_body(small_model: ModelMaker) -> None:
+    material, phase = (np.repeat(a, 3, axis=0) for a in one_body())
+    material[2, 0, 0, 1] = 2
+    for call in (lambda m: m.time_steps(material), lambda m: m.simulate(material, phase, [0])):
+        with pytest.raises(ValueError, match=r"material code that is not in the palette \(body 2\)"):
+            call(small_model(CANVAS))
+
+
+def test_empty_body(small_model: ModelMaker) -> None:
+    material, phase = one_body(0)
+    with pytest.raises(ValueError, match=r"the body has no voxel \(body 0\)"):
+        small_model(CANVAS).simulate(material, phase, [0])
+
+
+@pytest.mark.parametrize("phase", [NAN, INF, -INF, 1.1e6, -1e300])
+def test_absurd_phase(small_model: ModelMaker, phase: float) -> None:
+    material, phases = one_body(3)
+    phases[0, 1, 0, 0] = phase
+    with pytest.raises(ValueError, match=r"phase of an expanding voxel must be finite .* \(body 0\)"):
+        small_model(CANVAS).simulate(material, phases, [0])
+
+
+@pytest.mark.parametrize("steps", [[-1], [0, 0], [2, 1]])
+def test_samples_out_of_order(small_model: ModelMaker, steps: list[int]) -> None:
+    with pytest.raises(ValueError, match="strictly ascending"):
+        small_model(CANVAS).simulate(*one_body(), steps)
+
+
+def test_samples_end_with_the_simulation(small_model: ModelMaker) -> None:
+    model = small_model(CANVAS)
+    last = int(model.time_steps(one_body()[0])[1][0])
+    assert model.simulate(*one_body(), [last]).tracks["tip"].shape == (1, 1, 3)
+    with pytest.raises(ValueError, match=r"beyond the end of the simulation \(body 0\)"):
+        model.simulate(*one_body(), [last + 1])
+
+
+def test_time_step_must_be_usable(small_model: ModelMaker, material: Callable[..., object]) -> None:
+    endless = small_model(CANVAS, duration=1e300)
+    heavy = small_model(CANVAS, palette={1: material(density=1e308, youngs_modulus=1e-308)})
+    for model in (endless, heavy):
+        with pytest.raises(ValueError, match=r"no usable time step .* \(body 0\)"):
+            model.simulate(*one_body(), [])
+
+
+@pytest.mark.parametrize("dtype", [np.int64, np.uint16, np.float64])
+def test_material_codes_are_not_converted(small_model: ModelMaker, dtype: type) -> None:
+    material, phase = one_body()
+    with pytest.raises(ValueError, match="material must be uint8, got"):
+        small_model(CANVAS).simulate(material.astype(dtype), phase, [0])
+
+
+def test_shapes_must_fit(small_model: ModelMaker) -> None:
+    material, phase = one_body()
+    model = small_model(CANVAS)
+    with pytest.raises(ValueError, match=r"material must have the shape \[N, 2, 1, 2\], got \[2, 1, 2\]"):
+        model.simulate(material[0], phase, [0])
+    with pytest.raises(ValueError, match=r"phase_cycles must have the shape \[1, 2, 1, 2\], got \[2, 2, 1, 2\]"):
+        model.simulate(material, np.repeat(phase, 2, axis=0), [0])
+    with pytest.raises(ValueError, match=r"sample_steps must have the shape \[N\], got \[1, 1\]"):
+        model.simulate(material, phase, np.zeros((1, 1), np.int64))
+    with pytest.raises(ValueError, match="sample_steps must be int64, got float64"):
+        model.simulate(material, phase, np.zeros(1))
+
+
+def test_unknown_track(small_model: ModelMaker) -> None:
+    with pytest.raises(ValueError, match="unknown tracks elbow, knee; there are tip, face, body, voxels"):
+        small_model(CANVAS).simulate(*one_body(), [0], ["tip", "knee", "elbow"])
+
+
+def test_arrays_may_have_any_layout(small_model: ModelMaker) -> None:
+    rng = np.random.default_rng(2)
+    material = rng.choice(np.array([1, 3], np.uint8), (3, 3, 2, 4))
+    phase = rng.uniform(-1.0, 1.0, material.shape).astype(np.float32)
+    model = small_model(material.shape[1:])
+    plain = model.simulate(material, phase, range(9)).tracks
+    odd = model.simulate(np.asfortranarray(material), phase[::-1][::-1], list(range(9))).tracks
+    assert all(np.array_equal(plain[name], odd[name]) for name in plain)
+
+
+def test_public_names() -> None:
+    assert evoframe_libvox.KERNEL == "scalar"
+    assert all(hasattr(evoframe_libvox, name) for name in evoframe_libvox.__all__)

@@ -1,0 +1,146 @@
+"""A body's result depends on the body, and on nothing that happens around it."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from evoframe_libvox import Model, Result
+
+ModelMaker = Callable[..., Model]
+CANVAS = (4, 3, 3)
+
+
+@pytest.fixture(scope="module")
+def bodies() -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    rng = np.random.default_rng(1)
+    material = rng.choice(np.array([0, 1, 3], np.uint8), size=(12, *CANVAS))
+    material[:, 0, 0, 0] = 1
+    return material, rng.uniform(-1.0, 1.0, material.shape)
+
+
+@pytest.fixture
+def model(small_model: ModelMaker) -> Model:
+    clamped = np.zeros(CANVAS, bool)
+    clamped[0] = True
+    return small_model(CANVAS, clamped=clamped)
+
+
+def same(a: Result, b: Result) -> bool:
+    """Whether two results are the same, bit for bit."""
+    tracks = a.tracks.keys() == b.tracks.keys() and all(
+        np.array_equal(a.tracks[name], b.tracks[name], equal_nan=True) for name in a.tracks
+    )
+    return tracks and np.array_equal(a.diverged_step, b.diverged_step)
+
+
+def part(result: Result, bodies: slice) -> Result:
+    return Result({name: track[bodies] for name, track in result.tracks.items()}, result.diverged_step[bodies])
+
+
+def test_a_batch_equals_its_members(model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]) -> None:
+    material, phase = bodies
+    batch = model.simulate(material, phase, range(20))
+    for i in range(len(material)):
+        one = slice(i, i + 1)
+        assert same(part(batch, one), model.simulate(material[one], phase[one], range(20)))
+
+
+def test_threads_give_the_same(model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]) -> None:
+    material, phase = bodies
+    alone = model.simulate(material, phase, range(20))
+    with ThreadPoolExecutor(8) as pool:
+        jobs = [pool.submit(model.simulate, material, phase, range(20)) for _ in range(40)]
+        assert all(same(alone, job.result()) for job in jobs)
+
+
+def test_sampling_more_changes_nothing(
+    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
+) -> None:
+    every = model.simulate(*bodies, range(20))
+    few = model.simulate(*bodies, [3, 17], ["face"])
+    assert few.tracks.keys() == {"face"}
+    assert np.array_equal(few.tracks["face"], every.tracks["face"][:, [3, 17]])
+    assert model.simulate(*bodies, [], []).tracks == {}
+
+
+def test_phases_of_cells_that_do_not_expand_do_not_matter(
+    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
+) -> None:
+    material, phase = bodies
+    other = np.where(material == 3, phase, np.nan)
+    assert same(model.simulate(material, phase, range(20)), model.simulate(material, other, range(20)))
+
+
+def test_sample_0_is_the_initial_state(
+    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
+) -> None:
+    material, phase = bodies
+    start = model.simulate(material, phase, [0]).tracks["voxels"][:, 0]
+    lattice = 0.05 * (np.moveaxis(np.indices(CANVAS), 0, -1) + 0.5)
+    assert np.allclose(start[material > 0], np.broadcast_to(lattice, start.shape)[material > 0], rtol=1e-15)
+    assert np.isnan(start[material == 0]).all()
+
+
+def test_tracks_are_what_they_say(model: Model, small_model: ModelMaker) -> None:
+    material = np.zeros((1, *CANVAS), np.uint8)
+    material[0, :3, 1, 1] = (1, 3, 1)
+    material[0, 2, 0, 2] = 3  # the last of the flat order, and one of two at the largest x
+    tracks = model.simulate(material, np.zeros(material.shape), [0, 9]).tracks
+    voxels = tracks["voxels"][0]
+    assert np.array_equal(tracks["tip"][0], voxels[:, 2, 0, 2])
+    assert np.allclose(tracks["face"][0], (voxels[:, 2, 1, 1] + voxels[:, 2, 0, 2]) / 2, rtol=1e-14)
+    assert np.allclose(tracks["body"][0], np.nanmean(voxels, axis=(1, 2, 3)), rtol=1e-14)
+
+
+def test_means_are_weighted_with_mass(small_model: ModelMaker, material: Callable[..., object]) -> None:
+    model = small_model((1, 1, 3), palette={1: material(), 2: material(density=3e6)})
+    start = model.simulate(np.array([[[[1, 2, 0]]]], np.uint8), np.zeros((1, 1, 1, 3)), [0]).tracks
+    assert start["body"][0, 0, 2] == pytest.approx((0.025 + 3 * 0.075) / 4)
+    assert start["face"][0, 0, 2] == start["body"][0, 0, 2]
+
+
+def test_an_empty_batch_is_fine(model: Model) -> None:
+    nothing = np.zeros((0, *CANVAS))
+    result = model.simulate(nothing.astype(np.uint8), nothing, [0, 1])
+    assert result.tracks["voxels"].shape == (0, 2, *CANVAS, 3)
+    assert result.diverged_step.shape == (0,)
+
+
+def test_divergence_is_said_and_disturbs_nobody(
+    small_model: ModelMaker, material: Callable[..., object], palette: dict[int, object]
+) -> None:
+    # Slow damping goes by a voxel's own stiffness, the time step by that of its bonds, which softer neighbours limit.
+    model = small_model((4, 1, 1), palette=palette | {7: material(youngs_modulus=5e14)})
+    sane = np.array([1, 3, 0, 0], np.uint8).reshape(1, 4, 1, 1)
+    wild = np.array([3, 7, 1, 0], np.uint8).reshape(1, 4, 1, 1)
+    batch = np.concatenate([sane, wild, sane])
+    phase = np.full(batch.shape, 0.1)
+    steps = int(model.time_steps(batch)[1].min())
+    result = model.simulate(batch, phase, range(steps + 1))
+    at = result.diverged_step[1]
+    assert result.diverged_step[[0, 2]].tolist() == [0, 0]
+    assert 0 < at <= steps
+    for name, track in result.tracks.items():
+        occupied = track[1][:, wild[0] > 0] if name == "voxels" else track[1]
+        assert np.isfinite(occupied[:at]).all()
+        assert np.isnan(occupied[at:]).all()
+    alone = model.simulate(sane, phase[:1], range(steps + 1))
+    assert same(part(result, slice(0, 1)), alone)
+    assert same(part(result, slice(2, 3)), alone)
+
+
+def test_a_voxel_that_leaves_the_neighbourhood_has_diverged(small_model: ModelMaker) -> None:
+    # Two voxels without a bond, diagonal and so within each other's reach, and nothing to slow them down.
+    model = small_model((2, 2, 1), duration=100.0, slow_damping=0.0)
+    material = np.array([[1, 0], [0, 1]], np.uint8).reshape(1, 2, 2, 1)
+    steps = int(model.time_steps(material)[1][0])
+    result = model.simulate(material, np.zeros(material.shape), [0, 1, steps], ["tip", "body"])
+    at = int(result.diverged_step[0])
+    assert 0 < at < steps
+    last = model.simulate(material, np.zeros(material.shape), [at - 1], ["tip"]).tracks["tip"][0, 0]
+    way = np.linalg.norm(last - [0.075, 0.075, 0.025])
+    assert way == pytest.approx(100 * 2 * 0.05, rel=1e-3)
+    assert way <= 100 * 2 * 0.05

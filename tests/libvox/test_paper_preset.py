@@ -1,0 +1,71 @@
+"""The paper's setting, against traces of the engine that its authors used."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from evoframe_libvox import Model, Result
+
+Arrays = dict[str, NDArray[np.float64]]
+ModelMaker = Callable[..., Model]
+
+
+@pytest.fixture(scope="module")
+def result(paper: Arrays, paper_model: ModelMaker) -> Result:
+    return paper_model().simulate(paper["material"], paper["phase_cycles"], range(23))
+
+
+def largest(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    return float(np.nanmax(np.abs(a - b)))
+
+
+def test_time_step_and_steps_are_the_engines(paper: Arrays, paper_model: ModelMaker) -> None:
+    dt, steps = paper_model().time_steps(paper["material"])
+    assert np.allclose(dt, paper["time"][1], rtol=1e-14, atol=0.0)
+    assert (steps == 22).all()
+
+
+def test_nothing_diverges(result: Result) -> None:
+    assert not result.diverged_step.any()
+
+
+def test_displacements_are_the_engines(paper: Arrays, result: Result, say: Callable[[str], None]) -> None:
+    z = result.tracks["tip"][..., 2]
+    off = largest(z[:, 21] - z[:, 1], paper["displacement"])
+    say(f"36 displacements: largest deviation {off:.2e} m (limit 1e-9)")
+    assert off < 1e-9
+
+
+@pytest.mark.parametrize(("track", "golden"), [("tip", "tip"), ("face", "free_face_mean")])
+def test_traces_are_the_engines(
+    paper: Arrays, result: Result, track: str, golden: str, say: Callable[[str], None]
+) -> None:
+    off = largest(result.tracks[track], paper[golden])
+    say(f"{track} after each of 22 steps: largest deviation {off:.2e} m (limit 1e-9)")
+    assert off < 1e-9
+
+
+def test_final_positions_are_the_engines(paper: Arrays, result: Result, say: Callable[[str], None]) -> None:
+    final = result.tracks["voxels"][:, -1]
+    off = largest(final, paper["final_position"])
+    say(f"every voxel after the last step: largest deviation {off:.2e} m (limit 1e-8)")
+    assert off < 1e-8
+    assert (np.isnan(final).all(axis=-1) == (paper["material"] == 0)).all()
+
+
+def test_the_published_bodies_move_without_actuation(paper: Arrays, paper_model: ModelMaker) -> None:
+    published = [0, 3, 6]  # AFPO, HyperNEAT, NEAT with zero offsets
+    model = paper_model(expansion=0.0)
+    z = model.simulate(paper["material"][published], paper["phase_cycles"][published], [1, 21], ["tip"])
+    tip = z.tracks["tip"][..., 2]
+    assert tip[:, 1] - tip[:, 0] == pytest.approx([0.0011106, 0.0019527, 0.0020189], abs=5e-8)
+
+
+def test_what_moves_them_is_self_collision(paper: Arrays, paper_model: ModelMaker) -> None:
+    published = [0, 3, 6]
+    model = paper_model(expansion=0.0, self_collision=False)
+    voxels = model.simulate(paper["material"][published], paper["phase_cycles"][published], [1, 21], ["tip"])
+    tip = voxels.tracks["tip"][..., 2]
+    assert np.abs(tip[:, 1] - tip[:, 0]).max() < 1e-8

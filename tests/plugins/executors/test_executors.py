@@ -1,0 +1,163 @@
+import os
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from evoframe import Executor, ExecutorRun
+from evoframe.testing import ExecutorContract
+from evoframe_executors import Serial, Threads, evoframe_executors
+
+
+class TestSerial(ExecutorContract):
+    component = Serial()
+
+
+class TestThreads(ExecutorContract):
+    component = Threads()
+
+
+class TestOneThread(ExecutorContract):
+    component = Threads(workers=1)
+
+
+class TestTwoThreads(ExecutorContract):
+    component = Threads(workers=2)
+
+
+class TestManyThreads(ExecutorContract):
+    component = Threads(workers=16)
+
+
+def test_the_names_are_those_of_the_configuration() -> None:
+    assert dict(evoframe_executors()) == {"serial": Serial, "threads": Threads}
+
+
+@pytest.fixture
+def two_threads() -> Iterator[ExecutorRun]:
+    run = Threads(workers=2).start()
+    yield run
+    run.close()
+
+
+def threads_used(executor: Executor) -> set[int]:
+    run = executor.start()
+    try:
+        return set(run.map(lambda _: threading.get_ident(), range(20)))
+    finally:
+        run.close()
+
+
+@pytest.mark.parametrize("executor", [Serial(), Threads(workers=1)])
+def test_one_worker_is_the_thread_that_asks(executor: Executor) -> None:
+    assert executor.start().workers == 1
+    assert threads_used(executor) == {threading.get_ident()}
+
+
+def test_several_workers_work_at_once() -> None:
+    run = Threads(workers=3).start()
+    meeting = threading.Barrier(3, timeout=10)  # nobody passes before all three are there
+    try:
+        assert sorted(run.map(lambda _: meeting.wait(), range(3))) == [0, 1, 2]
+    finally:
+        run.close()
+
+
+def test_threads_are_gone_after_close() -> None:
+    before = threading.active_count()
+    threads_used(Threads(workers=4))
+    assert threading.active_count() == before
+
+
+@pytest.mark.parametrize(("cores", "workers"), [(6, 6), (1, 1), (None, 1)])
+def test_zero_workers_is_one_for_each_core_of_the_process(
+    monkeypatch: pytest.MonkeyPatch, cores: int | None, workers: int
+) -> None:
+    monkeypatch.setattr(os, "process_cpu_count", lambda: cores, raising=False)
+    run = Threads().start()
+    assert run.workers == workers
+    run.close()
+
+
+def test_before_python_3_13_the_affinity_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "process_cpu_count", raising=False)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 2, 5}, raising=False)
+    run = Threads().start()
+    assert run.workers == 3
+    run.close()
+
+
+def test_without_affinity_all_cores_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "process_cpu_count", raising=False)
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: 5)
+    run = Threads().start()
+    assert run.workers == 5
+    run.close()
+
+
+def test_after_a_failure_nothing_new_is_begun(two_threads: ExecutorRun) -> None:
+    begun = []
+
+    def fail_at_once(item: int) -> None:
+        begun.append(item)
+        if item == 0:
+            raise ZeroDivisionError
+        time.sleep(0.02)
+
+    with pytest.raises(ZeroDivisionError):
+        two_threads.map(fail_at_once, range(1000))
+    assert len(begun) < 100
+
+
+def test_after_a_failure_nothing_goes_on(two_threads: ExecutorRun) -> None:
+    finished = []
+
+    def slow_or_failing(item: int) -> None:
+        if item == 0:
+            raise ZeroDivisionError
+        time.sleep(0.05)
+        finished.append(item)
+
+    with pytest.raises(ZeroDivisionError):
+        two_threads.map(slow_or_failing, range(100))
+    so_far = list(finished)
+    time.sleep(0.1)
+    assert finished == so_far
+
+
+def test_a_failing_generator_of_items_begins_nothing(two_threads: ExecutorRun) -> None:
+    begun = []
+
+    def items() -> Iterator[int]:
+        yield 1
+        raise KeyError("items")
+
+    with pytest.raises(KeyError, match="items"):
+        two_threads.map(begun.append, items())
+    assert begun == []
+
+
+def test_an_interrupt_of_the_caller_drops_the_rest(
+    two_threads: ExecutorRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun = []
+
+    def work(item: int) -> None:
+        begun.append(item)
+        time.sleep(0.02)
+
+    def interrupted(*_: object, **__: object) -> None:
+        monkeypatch.undo()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("evoframe_executors.wait", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        two_threads.map(work, range(1000))
+    assert len(begun) < 100
+
+
+def test_a_negative_number_of_workers_is_refused() -> None:
+    with pytest.raises(ValueError, match="'workers' must be >= 0: -1"):
+        Threads(workers=-1)

@@ -1,0 +1,263 @@
+"""A plugin of toys, so that the core can be tested without networks and physics.
+
+A genome is a number, a design has one number for each role, and a score is their product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+from attrs import validators
+from numpy.typing import NDArray
+
+from evoframe import (
+    ConfigurationError,
+    Design,
+    Member,
+    Network,
+    Outcome,
+    Record,
+    Scores,
+    hookimpl,
+)
+
+
+@attrs.frozen
+class Mean:
+    domain: ClassVar[tuple[float, float]] = (-1e100, 1e100)
+
+    def check(self, n: int) -> None:
+        if n > 8:
+            raise ConfigurationError(f"{n} scores are too many for toy-mean")
+
+    def aggregate(self, scores: Scores) -> float:
+        return float(np.mean(np.sort(scores)))
+
+
+@attrs.frozen
+class First:
+    n: int = attrs.field(default=2, validator=validators.ge(1))
+
+    def size(self, n_members: int) -> int:
+        if self.n > n_members:
+            raise ConfigurationError(f"{self.n} collaborators of {n_members} members")
+        return self.n
+
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> NDArray[np.intp]:
+        del rng
+        order = sorted(range(len(members)), key=lambda i: (members[i].diverged, -(members[i].fitness or 0.0), i))
+        return np.array(order[: self.n], dtype=np.intp)
+
+
+@attrs.frozen
+class Number:
+    role: str = "a"
+    needs: tuple[str, ...] = ()
+    inputs: ClassVar[int] = 1
+    outputs: ClassVar[int] = 1
+
+    @property
+    def requires(self) -> tuple[str, ...]:
+        return self.needs
+
+    @property
+    def provides(self) -> tuple[str, ...]:
+        return (self.role,)
+
+    def decode(self, network: Network, design: Design) -> Design:
+        return design.with_role(self.role, network(np.ones((1, 1)))[0])
+
+
+@attrs.frozen
+class Drift:
+    """Keeps its fitter half and adds mutants of it."""
+
+    step: float = 0.1
+
+    def check(self, size: int) -> None:
+        if size > 100:
+            raise ConfigurationError(f"toy-drift takes at most 100 members, not {size}")
+
+    def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> DriftRun:
+        assert (inputs, outputs) == (1, 1)
+        return DriftRun(self.step, size, rng)
+
+
+@attrs.define
+class DriftRun:
+    step: float
+    size: int
+    rng: np.random.Generator
+    values: list[float] = attrs.field(factory=list)
+    ids: list[int] = attrs.field(factory=list)
+    fitness: list[float] = attrs.field(factory=list)
+    next_id: int = 1
+
+    def ask(self) -> Sequence[float]:
+        if not self.values:
+            kept: list[int] = []
+        else:
+            kept = sorted(range(self.size), key=lambda i: -self.fitness[i])[: self.size // 2]
+        values, ids = [self.values[i] for i in kept], [self.ids[i] for i in kept]
+        while len(values) < self.size:
+            parent = values[len(values) % len(kept)] if kept else 0.0
+            values.append(parent + self.step * float(self.rng.standard_normal()))
+            ids.append(self.next_id)
+            self.next_id += 1
+        self.values, self.ids, self.fitness = values, ids, []
+        return list(values)
+
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        del measures
+        if len(fitness) != self.size or not np.isfinite(fitness).all():
+            raise ValueError("one finite fitness for each genome")
+        self.fitness = fitness.tolist()
+
+    def members(self) -> Sequence[Member]:
+        fitness: Sequence[float | None] = self.fitness or [None] * self.size
+        return [Member(id=i, fitness=f) for i, f in zip(self.ids, fitness, strict=True)]
+
+    def genomes(self) -> Sequence[float]:
+        return list(self.values)
+
+    def express(self, genome: float) -> Network:
+        return lambda points: points * genome
+
+    def dump(self, genome: float) -> Any:
+        return genome
+
+    def state(self) -> Any:
+        return {
+            "values": list(self.values),
+            "ids": list(self.ids),
+            "fitness": list(self.fitness),
+            "next_id": self.next_id,
+            "rng": self.rng.bit_generator.state,
+        }
+
+    def restore(self, state: Any) -> None:
+        self.values, self.ids = list(state["values"]), list(state["ids"])
+        self.fitness, self.next_id = list(state["fitness"]), state["next_id"]
+        self.rng.bit_generator.state = state["rng"]
+
+
+@attrs.frozen
+class Product:
+    """Multiplies the numbers of all roles; diverges where one is beyond a limit."""
+
+    limit: float = 1e9
+    tracks: ClassVar[tuple[str, ...]] = ("value",)
+    requires: ClassVar[tuple[str, ...]] = ()
+
+    def check(self, record: Record) -> None:
+        for track in record.tracks:
+            if track not in self.tracks:
+                raise ConfigurationError(f"toy-product has no track '{track}'")
+
+    def key(self, design: Design, record: Record) -> bytes:
+        return repr((sorted((r, a.tolist()) for r, a in design.roles.items()), record)).encode()
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        return [self._outcome(design) for design in designs]
+
+    def _outcome(self, design: Design) -> Outcome:
+        values = [float(array[0]) for array in design.roles.values()]
+        diverged = max(map(abs, values)) > self.limit
+        value = np.nan if diverged else np.prod(values)
+        track = np.full((1, 3), value)
+        return Outcome(np.array([1]), np.array([1.0]), {"value": track}, 1 if diverged else None)
+
+
+@attrs.frozen
+class Value:
+    record: ClassVar[Record] = Record(tracks=("value",))
+
+    def score(self, outcome: Outcome) -> float:
+        return float(outcome.tracks["value"][0, 0])
+
+
+@attrs.frozen
+class Here:
+    workers: ClassVar[int] = 1
+
+    def start(self) -> Here:
+        return self
+
+    def map(self, function: Callable[[Any], Any], items: Any) -> list[Any]:
+        return [function(item) for item in items]
+
+    def close(self) -> None:
+        pass
+
+
+@hookimpl
+def evoframe_aggregators() -> Mapping[str, type[Any]]:
+    return {"toy-mean": Mean}
+
+
+@hookimpl
+def evoframe_strategies() -> Mapping[str, type[Any]]:
+    return {"toy-first": First}
+
+
+@hookimpl
+def evoframe_encoders() -> Mapping[str, type[Any]]:
+    return {"toy-number": Number}
+
+
+@hookimpl
+def evoframe_evolvers() -> Mapping[str, type[Any]]:
+    return {"toy-drift": Drift}
+
+
+@hookimpl
+def evoframe_simulators() -> Mapping[str, type[Any]]:
+    return {"toy-product": Product}
+
+
+@hookimpl
+def evoframe_objectives() -> Mapping[str, type[Any]]:
+    return {"toy-value": Value}
+
+
+@hookimpl
+def evoframe_executors() -> Mapping[str, type[Any]]:
+    return {"toy-here": Here}
+
+
+CONFIGURATION = """
+extends = false
+
+[run]
+seed = 3
+generations = 4
+
+[populations.a]
+size = 6
+encoder = { name = "toy-number", role = "a" }
+evolver = "toy-drift"
+
+[populations.b]
+size = 5
+encoder = { name = "toy-number", role = "b", needs = ["a"] }
+evolver = "toy-drift"
+
+[collaboration]
+name = "toy-first"
+n = 2
+
+[aggregator]
+name = "toy-mean"
+
+[simulator]
+name = "toy-product"
+
+[objective]
+name = "toy-value"
+
+[executor]
+name = "toy-here"
+"""

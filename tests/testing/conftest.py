@@ -1,0 +1,50 @@
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+Law = str
+
+
+@pytest.fixture
+def laws() -> Callable[..., list[Law]]:
+    """The names of the laws of a contract."""
+
+    def listed(contract: type[Any]) -> list[Law]:
+        return [name for name in dir(contract) if name.startswith("test_")]
+
+    return listed
+
+
+@pytest.fixture
+def keeps() -> Callable[..., None]:
+    """Run one law of a contract on a component; with its failure the test fails."""
+
+    def run(contract: type[Any], component: Any, law: Law, **attributes: Any) -> None:
+        subclass = type("TestComponent", (contract,), {"component": component, **attributes})
+        getattr(subclass(), law)()
+
+    return run
+
+
+@pytest.fixture
+def breaks(keeps: Callable[..., None]) -> Callable[..., None]:
+    """Make sure that a contract catches a component, by a failed assertion unless told otherwise."""
+
+    def run(
+        contract: type[Any],
+        component: Any,
+        law: Law,
+        error: Any = (AssertionError, pytest.fail.Exception),
+        **attributes: Any,
+    ) -> None:
+        try:
+            keeps(contract, component, law, **attributes)
+        except error:
+            return
+        except ExceptionGroup as group:  # several assertions of one law
+            assert not group.split(error)[1]
+            return
+        pytest.fail(f"{law} did not catch {component!r}")
+
+    return run

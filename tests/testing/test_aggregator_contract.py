@@ -1,0 +1,192 @@
+import statistics
+from collections.abc import Callable
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+from evoframe import ConfigurationError, Scores
+from evoframe.testing import AggregatorContract
+
+COUNTS = "test_numbers_of_collaborators_are_refused_by_a_configuration_error"
+FINITE = "test_the_result_is_finite"
+ORDER = "test_the_order_of_the_scores_is_irrelevant"
+LEFT_ALONE = "test_the_scores_are_left_alone"
+BOUNDED = "test_the_result_lies_within_the_scores"
+IDEMPOTENT = "test_equal_scores_give_that_score"
+MONOTONE = "test_the_result_is_no_less_when_a_score_grows"
+EXEMPTIONS = "test_exemptions_name_a_law_and_a_reason"
+EXEMPTIBLE = {"bounded": BOUNDED, "idempotent": IDEMPOTENT, "monotone": MONOTONE}
+
+
+@attrs.frozen
+class Median:
+    """A sound aggregator, and the base of those that are not."""
+
+    domain: ClassVar[tuple[float, float]] = (-1e100, 1e100)
+
+    def check(self, n: int) -> None:
+        if n < 1:
+            raise ConfigurationError(f"at least 1 collaborator, not {n}")
+
+    def aggregate(self, scores: Scores) -> float:
+        return float(statistics.median(scores.tolist()))
+
+
+class EvenMedian(Median):
+    def check(self, n: int) -> None:
+        if n < 1 or n % 2:
+            raise ConfigurationError(f"an even number of collaborators, not {n}")
+
+
+class TestMedian(AggregatorContract):
+    component = Median()
+
+
+class TestEvenMedian(AggregatorContract):
+    component = EvenMedian()
+
+
+class First(Median):
+    def aggregate(self, scores: Scores) -> float:
+        return float(scores[0])
+
+
+class UnsortedMean(Median):
+    """Depends on the order in its last bit only."""
+
+    def aggregate(self, scores: Scores) -> float:
+        return float(sum(score / len(scores) for score in scores.tolist()))
+
+
+class Product(Median):
+    def aggregate(self, scores: Scores) -> float:
+        with np.errstate(over="ignore"):
+            return float(np.prod(np.sort(scores)))
+
+
+class SortsInPlace(Median):
+    def aggregate(self, scores: Scores) -> float:
+        scores.sort()
+        return super().aggregate(scores)
+
+
+class Sum(Median):
+    def aggregate(self, scores: Scores) -> float:
+        return float(np.sort(scores).sum())
+
+
+class Pessimist(Median):
+    """Off by a little more than rounding."""
+
+    def aggregate(self, scores: Scores) -> float:
+        return float(scores.min()) * (1 - 1e-11)
+
+
+class Trimmed(Median):
+    """The mean of all but the largest spread: falls when an outlier grows."""
+
+    def aggregate(self, scores: Scores) -> float:
+        low, high = float(scores.min()), float(scores.max())
+        return low if high - low > 1e-3 else high
+
+
+class Integer(Median):
+    def aggregate(self, scores: Scores) -> Any:
+        return int(super().aggregate(scores))
+
+
+class AcceptsNothing(Median):
+    def check(self, n: int) -> None:
+        raise ConfigurationError(f"not {n}")
+
+
+class AcceptsZero(Median):
+    def check(self, n: int) -> None:
+        pass
+
+
+class RefusesWithoutAWord(Median):
+    def check(self, n: int) -> None:
+        if n < 1:
+            raise ConfigurationError
+
+
+class RefusesWithAnotherError(Median):
+    def check(self, n: int) -> None:
+        if n < 1:
+            raise ValueError(n)
+
+
+class UpsideDown(Median):
+    domain = (1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (First(), ORDER),
+        (UnsortedMean(), ORDER),
+        (Product(), FINITE),
+        (Integer(), FINITE),
+        (SortsInPlace(), LEFT_ALONE),
+        (Sum(), BOUNDED),
+        (Sum(), IDEMPOTENT),
+        (Pessimist(), BOUNDED),
+        (Pessimist(), IDEMPOTENT),
+        (Trimmed(), MONOTONE),
+        (AcceptsNothing(), COUNTS),
+        (AcceptsZero(), COUNTS),
+        (RefusesWithoutAWord(), COUNTS),
+        (UpsideDown(), "test_the_domain_is_a_range"),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, Median) else value,
+)
+def test_a_broken_aggregator_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(AggregatorContract, component, law)
+
+
+def test_a_refusal_by_another_error_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(AggregatorContract, RefusesWithAnotherError(), COUNTS, error=ValueError)
+
+
+class LawfulOnItsDomain(Median):
+    """Breaks every law for negative scores, none for positive ones."""
+
+    domain = (0.0, 1e100)
+
+    def aggregate(self, scores: Scores) -> float:
+        median = super().aggregate(scores)
+        return median if scores.min() >= 0 else abs(median) + 1
+
+
+class TestLawfulOnItsDomain(AggregatorContract):
+    component = LawfulOnItsDomain()
+
+
+class Exempt(Sum):
+    exempt_from = MappingProxyType({"bounded": "it is a sum", "idempotent": "it is a sum"})
+
+
+class TestExempt(AggregatorContract):
+    component = Exempt()
+
+
+@pytest.mark.parametrize(("exemption", "law"), EXEMPTIBLE.items())
+def test_an_exemption_without_a_reason_is_caught(
+    exemption: str, law: str, breaks: Callable[..., None]
+) -> None:
+    class Silent(Median):
+        exempt_from = MappingProxyType({exemption: " "})
+
+    breaks(AggregatorContract, Silent(), EXEMPTIONS)
+    breaks(AggregatorContract, Silent(), law)
+
+
+def test_an_exemption_from_another_law_is_caught(breaks: Callable[..., None]) -> None:
+    class Confused(Median):
+        exempt_from = MappingProxyType({"finite": "why not"})
+
+    breaks(AggregatorContract, Confused(), EXEMPTIONS)

@@ -1,0 +1,187 @@
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import attrs
+import pytest
+from attrs import validators
+
+from evoframe import testing
+from evoframe.testing.components import ComponentContract
+
+FROZEN = "test_it_is_a_frozen_attrs_class"
+EXPLAINED = "test_options_have_a_type_and_a_default_or_an_explanation"
+DEFAULTS = "test_defaults_make_a_component"
+SURVIVES = "test_options_survive_a_configuration_file"
+
+
+@attrs.frozen
+class Plain:
+    """A component with nothing to say about its option."""
+
+    n: int = 2
+
+
+@attrs.frozen
+class NoOptions:
+    """A component without options."""
+
+
+@attrs.frozen
+class Explained:
+    """A component with an option.
+
+    Attributes:
+        n: Has no default.
+    """
+
+    n: int
+
+
+@attrs.define
+class Mutable:
+    n: int = 2
+
+
+@dataclass(frozen=True)
+class NotAttrs:
+    n: int = 2
+
+
+@attrs.frozen
+class Unexplained:
+    """A component with a mysterious option."""
+
+    n: int
+
+
+@attrs.frozen
+class Untyped:
+    """A component with an option of no type."""
+
+    n = attrs.field(default=2)
+
+
+@attrs.frozen
+class RefusedDefault:
+    """A component whose default does not pass its own validator."""
+
+    n: int = attrs.field(default=0, validator=validators.ge(1))
+
+
+@attrs.frozen
+class CannotBeWritten:
+    """A component with an option that no configuration file can hold."""
+
+    n: complex = 1j
+
+
+@attrs.frozen(eq=False)
+class NeverEqual:
+    """A component that differs from its own copy."""
+
+    n: int = 2
+
+
+@pytest.mark.parametrize("component", [Plain(), Plain(n=3), NoOptions(), Explained(n=1)], ids=str)
+def test_a_sound_component_passes(
+    component: Any, keeps: Callable[..., None], laws: Callable[..., list[str]]
+) -> None:
+    for law in laws(ComponentContract):
+        keeps(ComponentContract, component, law)
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (Mutable(), FROZEN),
+        (NotAttrs(), FROZEN),
+        (Unexplained(n=1), EXPLAINED),
+        (Untyped(), EXPLAINED),
+        (NeverEqual(), SURVIVES),
+    ],
+    ids=str,
+)
+def test_an_unsound_component_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(ComponentContract, component, law)
+
+
+def test_a_default_that_is_refused_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(ComponentContract, RefusedDefault(n=1), DEFAULTS, error=ValueError)
+
+
+def test_an_option_that_no_file_can_hold_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(ComponentContract, CannotBeWritten(), SURVIVES, error=Exception)
+
+
+@pytest.mark.parametrize("name", testing.__all__)
+def test_what_is_no_component_of_the_kind_is_caught(name: str, breaks: Callable[..., None]) -> None:
+    breaks(getattr(testing, name), NoOptions(), "test_it_fulfils_its_protocol")
+
+
+@pytest.mark.parametrize("name", testing.__all__)
+def test_every_law_is_explained(name: str, laws: Callable[..., list[str]]) -> None:
+    contract = getattr(testing, name)
+    for law in laws(contract):
+        assert getattr(contract, law).__doc__, law
+
+
+@pytest.mark.parametrize("missing", ["hypothesis", "pytest"])
+def test_without_its_extra_the_package_says_what_to_install(missing: str) -> None:
+    code = f"import sys; sys.modules['{missing}'] = None; import evoframe.testing"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert ended.returncode == 1
+    assert ended.stderr.splitlines()[-1] == (
+        "ImportError: evoframe.testing needs pytest and hypothesis; "
+        "install them with: pip install 'evoframe[testing]'"
+    )
+
+
+def test_contracts_work_in_a_plugins_own_test_suite(tmp_path: Any) -> None:
+    """Two subclasses in one session, with warnings as errors; a failure shows the compared values."""
+    (tmp_path / "test_plugin.py").write_text(PLUGIN_TESTS)
+    command = [sys.executable, "-m", "pytest", "-W", "error", "-p", "no:cacheprovider", str(tmp_path)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert "TestSum::test_the_result_lies_within_the_scores" in ended.stdout
+    assert "TestMean::" not in ended.stdout
+    assert "TestMax::" not in ended.stdout
+    assert "Falsifying example: law" in ended.stdout
+    assert "+  where" in ended.stdout
+
+
+PLUGIN_TESTS = """
+import math
+import attrs
+from evoframe.testing import AggregatorContract
+
+@attrs.frozen
+class Max:
+    domain = (-1e100, 1e100)
+
+    def check(self, n):
+        from evoframe import ConfigurationError
+        if n < 1:
+            raise ConfigurationError(f"{n}")
+
+    def aggregate(self, scores):
+        return float(max(scores))
+
+class Mean(Max):
+    def aggregate(self, scores):
+        return math.fsum(scores) / len(scores)
+
+class Sum(Max):
+    def aggregate(self, scores):
+        return math.fsum(scores)
+
+class TestMax(AggregatorContract):
+    component = Max()
+
+class TestMean(AggregatorContract):
+    component = Mean()
+
+class TestSum(AggregatorContract):
+    component = Sum()
+"""

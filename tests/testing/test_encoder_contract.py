@@ -1,0 +1,155 @@
+from collections.abc import Callable
+from typing import Any, ClassVar, cast
+
+import attrs
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from evoframe import Design, Network
+from evoframe.testing import EncoderContract
+
+DECLARED = "test_roles_are_declared"
+ROLES = "test_every_network_gives_the_declared_roles"
+SHAPES = "test_shapes_and_types_are_the_same_for_every_network"
+FINITE = "test_every_network_gives_finite_numbers"
+SAME = "test_the_same_network_gives_the_same_design"
+LEFT_ALONE = "test_the_design_that_is_given_is_left_alone"
+POINTS = np.arange(8.0).reshape(4, 2)
+
+
+@attrs.frozen
+class Stripe:
+    """A sound encoder of four colours on a given body, and the base of those that are not."""
+
+    inputs: ClassVar[int] = 2
+    outputs: ClassVar[int] = 1
+    requires: ClassVar[Any] = ("body",)
+    provides: ClassVar[Any] = ("colour",)
+
+    def decode(self, network: Network, design: Design) -> Design:
+        return design.with_role("colour", self.colours(network))
+
+    def colours(self, network: Network) -> NDArray[Any]:
+        return np.clip(network(POINTS)[:, 0], -1, 1)
+
+
+class OnABody(EncoderContract):
+    def design(self) -> Design:
+        return Design({"body": np.ones(4)})
+
+
+class TestStripe(OnABody):
+    component = Stripe()
+
+
+class NoRole(Stripe):
+    provides = ()
+
+
+class ListOfRoles(Stripe):
+    provides = ["colour"]  # noqa: RUF012 - the fault under test
+
+
+class RequiredAndProvided(Stripe):
+    requires = ("body", "colour")
+
+
+class OneRoleMore(Stripe):
+    def decode(self, network: Network, design: Design) -> Design:
+        return super().decode(network, design).with_role("shade", np.ones(4))
+
+
+class OneRoleLess(Stripe):
+    def decode(self, network: Network, design: Design) -> Design:
+        return design
+
+
+class OnlyItsRole(Stripe):
+    def decode(self, network: Network, design: Design) -> Design:
+        return Design({"colour": self.colours(network)})
+
+
+class ShapeByNetwork(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        colours = super().colours(network)
+        return colours[colours >= 0]
+
+
+class TypeByNetwork(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        colours = super().colours(network)
+        return colours if colours.any() else colours.astype(np.int64)
+
+
+class Unclamped(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        with np.errstate(over="ignore"):
+            return cast(NDArray[Any], np.exp(network(POINTS)[:, 0]))
+
+
+class Remembers(Stripe):
+    calls: ClassVar[list[int]] = []
+
+    def colours(self, network: Network) -> NDArray[Any]:
+        self.calls.append(1)
+        return super().colours(network) + len(self.calls)
+
+
+class ChangesTheBody(Stripe):
+    def decode(self, network: Network, design: Design) -> Design:
+        return super().decode(network, design).with_role("body", np.zeros(4))
+
+
+class SinglePrecision(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        return cast(NDArray[Any], network(POINTS.astype(np.float32))[:, 0])  # type: ignore[arg-type]
+
+
+class PointByPoint(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        return np.array([network(point) for point in POINTS])
+
+
+class ThreeInputs(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        return np.clip(network(np.ones((4, 3)))[:, 0], -1, 1)
+
+
+class InfinitePoints(Stripe):
+    def colours(self, network: Network) -> NDArray[Any]:
+        return np.clip(network(POINTS / np.zeros(1) if POINTS.all() else POINTS + np.inf)[:, 0], -1, 1)
+
+
+class NoInputs(Stripe):
+    inputs = 0
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (NoRole(), DECLARED),
+        (ListOfRoles(), DECLARED),
+        (RequiredAndProvided(), DECLARED),
+        (NoInputs(), "test_a_network_has_inputs_and_outputs"),
+        (OneRoleMore(), ROLES),
+        (OneRoleLess(), ROLES),
+        (OnlyItsRole(), ROLES),
+        (ShapeByNetwork(), SHAPES),
+        (TypeByNetwork(), SHAPES),
+        (Unclamped(), FINITE),
+        (SinglePrecision(), FINITE),
+        (PointByPoint(), FINITE),
+        (ThreeInputs(), FINITE),
+        (InfinitePoints(), FINITE),
+        (Remembers(), SAME),
+        (ChangesTheBody(), LEFT_ALONE),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, Stripe) else value,
+)
+def test_a_broken_encoder_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(OnABody, component, law)
+
+
+def test_an_example_without_the_required_roles_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(EncoderContract, Stripe(), "test_the_example_has_the_required_roles")

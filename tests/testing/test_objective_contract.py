@@ -1,0 +1,88 @@
+import itertools
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+from evoframe import Outcome, Record
+from evoframe.testing import ObjectiveContract
+
+RECORD = "test_it_says_what_must_be_recorded"
+FINITE = "test_the_score_is_finite"
+SAME = "test_the_same_outcome_has_the_same_score"
+LEFT_ALONE = "test_the_outcome_is_left_alone"
+
+
+@attrs.frozen
+class Rise:
+    """A sound objective, and the base of those that are not."""
+
+    record: ClassVar[Record] = Record(("tip",))
+
+    def score(self, outcome: Outcome) -> Any:
+        return float(outcome.tracks["tip"][-1, 2] - outcome.tracks["tip"][0, 2])
+
+
+class RiseAtTwoSamples(Rise):
+    record = Record(("tip", "base"), every=0.01, samples=(0, 5), initial=True)
+
+    def score(self, outcome: Outcome) -> Any:
+        assert outcome.steps.tolist() == [0, 1, 6]
+        assert outcome.times.tolist() == [0, 0.01, 0.06]
+        return float(outcome.tracks["tip"][2, 2] - outcome.tracks["base"][1, 2])
+
+
+class TestRise(ObjectiveContract):
+    component = Rise()
+
+
+class TestRiseAtTwoSamples(ObjectiveContract):
+    component = RiseAtTwoSamples()
+
+
+class NothingRecorded(Rise):
+    record = Record(())
+
+
+class Relative(Rise):
+    """Divides by zero where nothing moves."""
+
+    def score(self, outcome: Outcome) -> Any:
+        tip = outcome.tracks["tip"]
+        with np.errstate(invalid="ignore"):
+            return float(np.float64(super().score(outcome)) / np.ptp(tip))
+
+
+class Whole(Rise):
+    def score(self, outcome: Outcome) -> Any:
+        return round(super().score(outcome))
+
+
+class Counts(Rise):
+    calls: ClassVar[Any] = itertools.count()
+
+    def score(self, outcome: Outcome) -> Any:
+        return float(next(self.calls))
+
+
+class Centres(Rise):
+    def score(self, outcome: Outcome) -> Any:
+        outcome.tracks["tip"][:] -= outcome.tracks["tip"].mean() + 1
+        return super().score(outcome)
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (NothingRecorded(), RECORD),
+        (Relative(), FINITE),
+        (Whole(), FINITE),
+        (Counts(), SAME),
+        (Centres(), LEFT_ALONE),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, Rise) else value,
+)
+def test_a_broken_objective_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(ObjectiveContract, component, law)

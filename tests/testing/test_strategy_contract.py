@@ -1,0 +1,158 @@
+import random
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+
+from evoframe import ConfigurationError, Member
+from evoframe.testing import CollaborationStrategyContract
+
+REFUSALS = "test_populations_are_refused_by_a_configuration_error_that_names_their_size"
+DECLARED = "test_no_more_collaborators_than_members_are_declared"
+COUNT = "test_as_many_as_declared_are_chosen"
+VALID = "test_indices_are_valid"
+ONCE = "test_nobody_is_chosen_twice"
+SAME = "test_the_same_random_state_gives_the_same_choice"
+TIES = "test_ties_are_broken_by_index"
+CLEAN = "test_no_diverged_member_is_chosen_while_a_clean_one_is_left"
+
+
+@attrs.frozen
+class Two:
+    """A sound strategy, the two fittest, and the base of those that are not."""
+
+    def size(self, n_members: int) -> int:
+        if n_members < 2:
+            raise ConfigurationError(f"2 of {n_members} members")
+        return 2
+
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> Any:
+        self.size(len(members))
+        return np.array(self.ranked(members, rng)[:2], dtype=np.intp)
+
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        return sorted(range(len(members)), key=lambda i: (members[i].diverged, -(members[i].fitness or 0), i))
+
+
+class TestTwo(CollaborationStrategyContract):
+    component = Two()
+
+
+class AnyTwo(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        order = rng.permutation(len(members)).tolist()
+        return sorted(order, key=lambda i: members[i].diverged)
+
+
+class TestAnyTwo(CollaborationStrategyContract):
+    component = AnyTwo()
+
+
+class Repeats(Two):
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> Any:
+        return super().select(members, rng)[[0, 0]]
+
+
+class OneTooMany(Two):
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> Any:
+        return np.array(self.ranked(members, rng)[:3], dtype=np.intp)
+
+
+class OtherType(Two):
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> Any:
+        return super().select(members, rng).astype(np.float64)
+
+
+class FromTheEnd(Two):
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> Any:
+        return super().select(members, rng) - len(members)
+
+
+class PythonsRandom(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        return random.sample(range(len(members)), len(members))
+
+
+class NumpysRandom(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        return list(np.random.permutation(len(members)))  # noqa: NPY002
+
+
+class FreshRandom(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        return list(np.random.default_rng().permutation(len(members)))
+
+
+class LastOfEquals(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        return sorted(range(len(members)), key=lambda i: (members[i].diverged, members[i].fitness, i))[::-1]
+
+
+class TiesById(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        order = super().ranked(members, rng)
+        return sorted(order, key=lambda i: (members[i].diverged, -(members[i].fitness or 0), members[i].id))
+
+
+class TakesDiverged(Two):
+    def ranked(self, members: Sequence[Member], rng: np.random.Generator) -> list[int]:
+        return sorted(range(len(members)), key=lambda i: (-(members[i].fitness or 0), i))
+
+
+class PromisesTooMuch(Two):
+    def size(self, n_members: int) -> int:
+        return 2
+
+
+class PromisesNothing(Two):
+    def size(self, n_members: int) -> int:
+        return 0
+
+
+class AcceptsNobody(Two):
+    def size(self, n_members: int) -> int:
+        raise ConfigurationError(f"not {n_members}")
+
+
+class RefusesWithoutNumbers(Two):
+    def size(self, n_members: int) -> int:
+        if n_members < 2:
+            raise ConfigurationError("too few")
+        return 2
+
+
+class RefusesWithAnotherError(Two):
+    def size(self, n_members: int) -> int:
+        if n_members < 2:
+            raise ValueError(n_members)
+        return 2
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (Repeats(), ONCE),
+        (OneTooMany(), COUNT),
+        (OtherType(), COUNT),
+        (FromTheEnd(), VALID),
+        (PythonsRandom(), SAME),
+        (NumpysRandom(), SAME),
+        (FreshRandom(), SAME),
+        (LastOfEquals(), TIES),
+        (TiesById(), TIES),
+        (TakesDiverged(), CLEAN),
+        (PromisesTooMuch(), DECLARED),
+        (PromisesNothing(), DECLARED),
+        (AcceptsNobody(), REFUSALS),
+        (RefusesWithoutNumbers(), REFUSALS),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, Two) else value,
+)
+def test_a_broken_strategy_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(CollaborationStrategyContract, component, law)
+
+
+def test_a_refusal_by_another_error_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(CollaborationStrategyContract, RefusesWithAnotherError(), REFUSALS, error=ValueError)
