@@ -17,7 +17,8 @@ class Observers:
 
     def __init__(self, manager: pluggy.PluginManager) -> None:
         self._manager = manager
-        self._active = list(manager.get_plugins())
+        self._plugins = [plugin for _, plugin in manager.list_name_plugin() if plugin is not None]
+        self._active = list(self._plugins)
 
     def tell(self, hook: str, **arguments: Any) -> None:
         """Call *hook* of every observer; one that raises is disabled with a warning.
@@ -25,9 +26,8 @@ class Observers:
         Warns:
             PluginWarning: An observer raised.
         """
-        listeners = {implementation.plugin for implementation in self._implementations(hook)}
-        for plugin in [plugin for plugin in self._active if plugin in listeners]:
-            others = [other for other in listeners if other is not plugin]
+        for plugin in list(self._active):
+            others = [other for other in self._plugins if other is not plugin]
             try:
                 self._manager.subset_hook_caller(hook, others)(**arguments)
             except Exception as error:  # noqa: BLE001 - whatever an observer does, the run goes on
@@ -35,6 +35,3 @@ class Observers:
                 name = self._manager.get_name(plugin)
                 cause = f"{type(error).__name__}: {error}"
                 warnings.warn(f"observer '{name}' is disabled: {cause}", PluginWarning, stacklevel=2)
-
-    def _implementations(self, hook: str) -> list[pluggy.HookImpl]:
-        return list(getattr(self._manager.hook, hook).get_hookimpls())

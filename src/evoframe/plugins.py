@@ -108,7 +108,8 @@ class Plugins:
         try:
             self.manager.register(plugin, name=f"{source.distribution}:{source.entry_point}")
         except (pluggy.PluginValidationError, ValueError) as error:
-            self.manager.unregister(plugin)
+            if self.manager.is_registered(plugin):
+                self.manager.unregister(plugin)
             raise PluginError(str(error)) from error
         try:
             _check_hooks(self.manager, plugin)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import os
 import sqlite3
 import tempfile
@@ -18,6 +19,8 @@ from evoframe.errors import InputError
 from evoframe.values import BestPair, Design, Pair, PopulationReport, Turn
 
 __all__ = ["FORMAT", "Store", "design_from_json", "design_to_json", "read_champion", "write_json"]
+
+_log = logging.getLogger(__name__)
 
 FORMAT = 1
 """Version of the run directory and of the champion file."""
@@ -110,8 +113,11 @@ class Store:
                 self._database.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", row)
 
     def close(self) -> None:
-        """Leave one self-contained database file."""
-        self._database.execute("PRAGMA journal_mode = DELETE")
+        """Leave one self-contained database file, unless somebody is reading it just now."""
+        try:
+            self._database.execute("PRAGMA journal_mode = DELETE")
+        except sqlite3.OperationalError as error:
+            _log.info("%s: the journal stays beside the database: %s", self.directory, error)
         self._database.close()
 
     def _insert(self, table: str, rows: Iterator[tuple[Any, ...]] | list[tuple[Any, ...]]) -> None:

@@ -93,7 +93,12 @@ def test_the_best_pair_is_the_earliest_of_the_best_that_were_simulated(toy_confi
 
 def test_best_so_far_never_falls(toy_config: Load) -> None:
     for name in "ab":
-        reports = [r for turn in assemble(toy_config("run.generations=30")) for r in turn.reports if r.population == name]
+        reports = [
+            r
+            for turn in assemble(toy_config("run.generations=30"))
+            for r in turn.reports
+            if r.population == name
+        ]
         assert [r.best_so_far for r in reports] == list(np.maximum.accumulate([r.best for r in reports]))
 
 
@@ -134,7 +139,9 @@ def test_a_restored_loop_continues_bit_for_bit(toy_config: Load, at: int) -> Non
 
 def test_more_than_two_populations_are_combined_position_by_position(toy_config: Load) -> None:
     config = toy_config(
-        'populations.c.encoder={name="toy-number", role="c"}', "populations.c.evolver=toy-drift", "populations.c.size=5"
+        'populations.c.encoder={name="toy-number", role="c"}',
+        "populations.c.evolver=toy-drift",
+        "populations.c.size=5",
     )
     turns = list(assemble(config))
     assert len(turns) == 1 + 4 * 3
@@ -224,7 +231,9 @@ class TestChampion:
         report = judged(population, [1, 2], [None, 0.5])
         assert (report.champion, report.members[0].fitness) == (0.5, 0.5)
 
-    def test_without_a_clean_one_the_lowest_that_the_population_has_had_counts(self, population: Population) -> None:
+    def test_without_a_clean_one_the_lowest_that_the_population_has_had_counts(
+        self, population: Population
+    ) -> None:
         judged(population, [1, 2], [5.0, -1.0])
         report = judged(population, [1, 2], [None, None])
         assert [member.fitness for member in report.members] == [-1.0, -1.0]

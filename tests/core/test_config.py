@@ -57,7 +57,11 @@ class TestPresets:
         for population in config.populations.values():
             neat = population.evolver.component
             assert population.size == 25
-            assert (neat.compatibility_threshold, neat.max_stagnation, neat.survival_threshold) == (3.0, 25, 0.6)
+            assert (neat.compatibility_threshold, neat.max_stagnation, neat.survival_threshold) == (
+                3.0,
+                25,
+                0.6,
+            )
             assert (neat.compatibility_disjoint, neat.compatibility_weight) == (1.0, 0.5)
             assert (neat.connection_add, neat.connection_delete, neat.enabled_mutate_rate) == (0.3, 0.2, 0.5)
             assert (neat.node_add, neat.node_delete, neat.activation_mutate_rate) == (0.3, 0.2, 0.4)
@@ -66,7 +70,11 @@ class TestPresets:
     def test_authors_rates_differ_where_the_authors_files_do(self, installed: Plugins) -> None:
         config = load_config("authors-rates", plugins=installed)
         morphology, controller = (p.evolver.component for p in config.populations.values())
-        assert (morphology.connection_delete, morphology.node_delete, morphology.node_add) == (0.15, 0.15, 0.3)
+        assert (morphology.connection_delete, morphology.node_delete, morphology.node_add) == (
+            0.15,
+            0.15,
+            0.3,
+        )
         assert (controller.connection_add, controller.node_add, controller.node_delete) == (0.2, 0.2, 0.1)
         for neat in (morphology, controller):
             assert (neat.survival_threshold, neat.max_stagnation) == (0.4, 20)
@@ -80,10 +88,14 @@ class TestMerging:
         assert "weights" not in config.tables()["aggregator"]
 
     def test_the_same_name_keeps_them(self, installed: Plugins) -> None:
-        config = load_config("paper", overrides=["simulator.duration=0.08", "simulator=vox"], plugins=installed)
+        config = load_config(
+            "paper", overrides=["simulator.duration=0.08", "simulator=vox"], plugins=installed
+        )
         assert config.simulator.component.duration == 0.08
 
-    def test_a_file_starts_from_paper_unless_it_says_otherwise(self, installed: Plugins, tmp_path: Path) -> None:
+    def test_a_file_starts_from_paper_unless_it_says_otherwise(
+        self, installed: Plugins, tmp_path: Path
+    ) -> None:
         path = tmp_path / "my.toml"
         path.write_text('[aggregator]\nname = "wm"\nweights = [0.7, 0.3]\n')
         config = load_config(path, plugins=installed)
@@ -105,7 +117,15 @@ class TestMerging:
 
     @pytest.mark.parametrize(
         ("text", "value"),
-        [("2", 2), ("0.5", 0.5), ("true", True), ("hm", "hm"), ('"a b"', "a b"), ("[1, 2]", [1, 2]), ("1e-3", 1e-3)],
+        [
+            ("2", 2),
+            ("0.5", 0.5),
+            ("true", True),
+            ("hm", "hm"),
+            ('"a b"', "a b"),
+            ("[1, 2]", [1, 2]),
+            ("1e-3", 1e-3),
+        ],
     )
     def test_the_right_side_of_set_is_toml_and_a_bare_word_is_a_string(self, text: str, value: Any) -> None:
         from evoframe.layers import read_layers  # noqa: PLC0415
@@ -180,7 +200,9 @@ class TestFaults:
             load_config(tmp_path / "nowhere.toml", plugins=toy_plugins)
 
     def test_an_unknown_preset_offers_those_that_exist(self, toy_plugins: Plugins) -> None:
-        with pytest.raises(ConfigurationError, match=r"no preset 'papr'; did you mean 'paper'\? presets: authors"):
+        with pytest.raises(
+            ConfigurationError, match=r"no preset 'papr'; did you mean 'paper'\? presets: authors"
+        ):
             load_config("papr", plugins=toy_plugins)
 
     def test_files_that_extend_each_other_are_refused(self, tmp_path: Path, toy_plugins: Plugins) -> None:
@@ -216,8 +238,14 @@ class TestRealComponents:
             ("simulator.phase_unit=degrees", ['expected one of "cycles", "radians", found "degrees"']),
             ("objective.last=0", ["objective.last: must be >= 1, found 0"]),
             ("objective.first=7", ["objective: first must come before last"]),
-            ("populations.morphology.evolver.bias.init_mean=x", ["populations.morphology.evolver.bias.init_mean"]),
-            ("populations.morphology.encoder.canvas=[20, 8]", ["canvas: expected a list of 3, found [20, 8]"]),
+            (
+                "populations.morphology.evolver.bias.init_mean=x",
+                ["populations.morphology.evolver.bias.init_mean"],
+            ),
+            (
+                "populations.morphology.encoder.canvas=[20, 8]",
+                ["canvas: expected a list of 3, found [20, 8]"],
+            ),
         ],
     )
     def test_say_what_they_cannot_accept(self, installed: Plugins, override: str, parts: list[str]) -> None:
@@ -238,7 +266,12 @@ names = st.sampled_from(["am", "wm", "gm", "hm"])
     collision=st.booleans(),
 )
 def test_any_configuration_survives_a_round_trip(
-    aggregator: str, n: int, seed: int, duration: float, collision: bool, tmp_path_factory: pytest.TempPathFactory
+    aggregator: str,
+    n: int,
+    seed: int,
+    duration: float,
+    collision: bool,
+    tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     plugins = discovered()
     overrides = [

@@ -1,4 +1,4 @@
-"""What the tests of the solver share: the paper's setting, small models, and a way to say what was measured."""
+"""What the tests of the solver share: the paper's setting, small models, a way to say what was measured."""
 
 import sys
 from collections.abc import Callable

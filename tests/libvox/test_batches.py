@@ -37,10 +37,14 @@ def same(a: Result, b: Result) -> bool:
 
 
 def part(result: Result, bodies: slice) -> Result:
-    return Result({name: track[bodies] for name, track in result.tracks.items()}, result.diverged_step[bodies])
+    return Result(
+        {name: track[bodies] for name, track in result.tracks.items()}, result.diverged_step[bodies]
+    )
 
 
-def test_a_batch_equals_its_members(model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]) -> None:
+def test_a_batch_equals_its_members(
+    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
+) -> None:
     material, phase = bodies
     batch = model.simulate(material, phase, range(20))
     for i in range(len(material)):
@@ -112,7 +116,7 @@ def test_an_empty_batch_is_fine(model: Model) -> None:
 def test_divergence_is_said_and_disturbs_nobody(
     small_model: ModelMaker, material: Callable[..., object], palette: dict[int, object]
 ) -> None:
-    # Slow damping goes by a voxel's own stiffness, the time step by that of its bonds, which softer neighbours limit.
+    # Slow damping goes by a voxel's own stiffness, the time step by its bonds', which soft neighbours limit.
     model = small_model((4, 1, 1), palette=palette | {7: material(youngs_modulus=5e14)})
     sane = np.array([1, 3, 0, 0], np.uint8).reshape(1, 4, 1, 1)
     wild = np.array([3, 7, 1, 0], np.uint8).reshape(1, 4, 1, 1)

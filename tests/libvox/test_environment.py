@@ -41,6 +41,10 @@ def test_motion_is_the_engines(name: str, data: Path, say: Callable[[str], None]
         "final": np.nanmax(np.abs(last.tracks["voxels"][0, 0] - golden["final_position"])),
     }
     limit = max(1e-9, 10.0 * case["nudge_max_dev_m"])
-    say(f"{name}: " + ", ".join(f"{track} {value:.1e}" for track, value in off.items()) + f" m (limit {limit:.1e})")
+    say(
+        f"{name}: "
+        + ", ".join(f"{track} {value:.1e}" for track, value in off.items())
+        + f" m (limit {limit:.1e})"
+    )
     assert max(off.values()) < limit
     assert not result.diverged_step.any()

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
@@ -47,7 +46,8 @@ def simulate(
     model = Model(canvas, PALETTE, Settings(**(options | changes)), clamped)
     result = model.simulate(material[None], phase[None], range(STEPS + 1), ["voxels"])
     assert result.diverged_step[0] == 0
-    return result.tracks["voxels"][0]
+    voxels: NDArray[np.float64] = result.tracks["voxels"][0]
+    return voxels
 
 
 def apart(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
@@ -78,10 +78,7 @@ def test_the_axes_are_alike(body: Any, order: tuple[int, int, int]) -> None:
     """Bonds point along +axis whatever the axis. (Contacts are told apart by order: left out.)"""
     material, phase, clamped = body
     plain = simulate(material, phase, clamped, self_collision=False)
-    turned = simulate(
-        *(np.ascontiguousarray(a.transpose(order)) for a in body),
-        self_collision=False,
-    )
+    turned = simulate(*(np.ascontiguousarray(a.transpose(order)) for a in body), self_collision=False)
     assert apart(turned, plain.transpose(0, *(1 + i for i in order), 4)[..., list(order)]) < 1e-10 * L
 
 
@@ -131,4 +128,4 @@ def test_bodies_in_the_strategy_move() -> None:
     """The laws are not about bodies at rest."""
     material = np.full((3, 2, 2), 3, np.uint8)
     voxels = simulate(material, np.linspace(0, 1, 12).reshape(3, 2, 2), np.zeros((3, 2, 2), bool))
-    assert np.abs(voxels - voxels[0]).max() == pytest.approx(0.1 * L, rel=0.9)
+    assert np.abs(voxels - voxels[0]).max() > 0.05 * L

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evoframe_libvox import Model, Result
+from evoframe_libvox import Model, Result, Track
 
 Arrays = dict[str, NDArray[np.float64]]
 ModelMaker = Callable[..., Model]
@@ -40,7 +40,7 @@ def test_displacements_are_the_engines(paper: Arrays, result: Result, say: Calla
 
 @pytest.mark.parametrize(("track", "golden"), [("tip", "tip"), ("face", "free_face_mean")])
 def test_traces_are_the_engines(
-    paper: Arrays, result: Result, track: str, golden: str, say: Callable[[str], None]
+    paper: Arrays, result: Result, track: Track, golden: str, say: Callable[[str], None]
 ) -> None:
     off = largest(result.tracks[track], paper[golden])
     say(f"{track} after each of 22 steps: largest deviation {off:.2e} m (limit 1e-9)")

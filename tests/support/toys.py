@@ -48,7 +48,9 @@ class First:
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> NDArray[np.intp]:
         del rng
-        order = sorted(range(len(members)), key=lambda i: (members[i].diverged, -(members[i].fitness or 0.0), i))
+        order = sorted(
+            range(len(members)), key=lambda i: (members[i].diverged, -(members[i].fitness or 0.0), i)
+        )
         return np.array(order[: self.n], dtype=np.intp)
 
 

@@ -1,7 +1,8 @@
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from hypothesis import Phase, settings
 
 Law = str
 
@@ -28,7 +29,17 @@ def keeps() -> Callable[..., None]:
 
 
 @pytest.fixture
-def breaks(keeps: Callable[..., None]) -> Callable[..., None]:
+def first_failure_only() -> Iterator[None]:
+    """Spare the time that hypothesis takes to find the simplest failure."""
+    profile = settings.get_current_profile_name()
+    settings.register_profile("first-failure-only", phases=[Phase.generate], database=None)
+    settings.load_profile("first-failure-only")
+    yield
+    settings.load_profile(profile)
+
+
+@pytest.fixture
+def breaks(keeps: Callable[..., None], first_failure_only: None) -> Callable[..., None]:
     """Make sure that a contract catches a component, by a failed assertion unless told otherwise."""
 
     def run(
@@ -43,7 +54,9 @@ def breaks(keeps: Callable[..., None]) -> Callable[..., None]:
         except error:
             return
         except ExceptionGroup as group:  # several assertions of one law
-            assert not group.split(error)[1]
+            others = group.split(error)[1]
+            if others:
+                raise others from group
             return
         pytest.fail(f"{law} did not catch {component!r}")
 

@@ -85,12 +85,12 @@ class Pessimist(Median):
         return float(scores.min()) * (1 - 1e-11)
 
 
-class Trimmed(Median):
-    """The mean of all but the largest spread: falls when an outlier grows."""
+class RiskAverse(Median):
+    """Falls when one score grows beyond the others."""
 
     def aggregate(self, scores: Scores) -> float:
-        low, high = float(scores.min()), float(scores.max())
-        return low if high - low > 1e-3 else high
+        values = np.sort(scores)
+        return float(values.mean() - values.std())
 
 
 class Integer(Median):
@@ -136,7 +136,7 @@ class UpsideDown(Median):
         (Sum(), IDEMPOTENT),
         (Pessimist(), BOUNDED),
         (Pessimist(), IDEMPOTENT),
-        (Trimmed(), MONOTONE),
+        (RiskAverse(), MONOTONE),
         (AcceptsNothing(), COUNTS),
         (AcceptsZero(), COUNTS),
         (RefusesWithoutAWord(), COUNTS),

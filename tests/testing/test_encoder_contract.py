@@ -85,7 +85,7 @@ class TypeByNetwork(Stripe):
 class Unclamped(Stripe):
     def colours(self, network: Network) -> NDArray[Any]:
         with np.errstate(over="ignore"):
-            return cast(NDArray[Any], np.exp(network(POINTS)[:, 0]))
+            return cast("NDArray[Any]", np.exp(network(POINTS)[:, 0]))
 
 
 class Remembers(Stripe):
@@ -103,7 +103,7 @@ class ChangesTheBody(Stripe):
 
 class SinglePrecision(Stripe):
     def colours(self, network: Network) -> NDArray[Any]:
-        return cast(NDArray[Any], network(POINTS.astype(np.float32))[:, 0])  # type: ignore[arg-type]
+        return cast("NDArray[Any]", network(POINTS.astype(np.float32))[:, 0])  # type: ignore[arg-type]
 
 
 class PointByPoint(Stripe):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, TypeVar
 
-__all__ = ["entry", "number", "rows", "whole"]
+__all__ = ["entry", "number", "rows", "whole", "wholes"]
 
 T = TypeVar("T")
 
@@ -28,6 +28,12 @@ def whole(table: Any, key: str, least: int | None = None) -> int:
             f"'{key}' must be an integer{'' if least is None else f' from {least} up'}, not {value!r}"
         )
     return value
+
+
+def wholes(table: Any, key: str) -> list[int]:
+    """Return the list of integers of *key*."""
+    items = rows(table, key)
+    return [whole({key: item}, key) for item in items]
 
 
 def number(table: Any, key: str) -> float:

@@ -143,6 +143,8 @@ class GenePool:
         """Return everything but genomes as JSON values."""
         innovations = self.tracker.generation_innovations
         return {
+            "inputs": self.inputs,
+            "outputs": self.outputs,
             "next_genome": self.genome_ids.value,
             "next_node": self.node_ids.value,
             "innovation": self.tracker.global_counter,
@@ -160,6 +162,11 @@ class GenePool:
         Raises:
             ValueError: It is no such state; the pool stays as it is.
         """
+        shape = whole(state, "inputs"), whole(state, "outputs")
+        if shape != (self.inputs, self.outputs):
+            raise ValueError(
+                f"expected networks of {(self.inputs, self.outputs)} inputs and outputs, got {shape}"
+            )
         used_nodes = [key for genome in genomes for key in genome.nodes]
         genome_id = whole(state, "next_genome", 1 + max(genome.key for genome in genomes))
         node_id = whole(state, "next_node", max(self.outputs, 1 + max(used_nodes)))

@@ -15,7 +15,7 @@ from neat.species import Species
 from numpy.typing import NDArray
 
 from evoframe import ConfigurationError, Member, Network
-from evoframe_evolvers.checked import entry, number, rows, whole
+from evoframe_evolvers.checked import entry, number, rows, whole, wholes
 from evoframe_evolvers.cohort import Cohort
 from evoframe_evolvers.crowding import ExactReproduction, RoomyStagnation
 from evoframe_evolvers.genomes import Counter, GenePool, Sections
@@ -204,7 +204,7 @@ def _dump_species(species: Any) -> dict[str, Any]:
 def _load_species(saved: Any, genomes: Mapping[int, Any]) -> Any:
     species = Species(whole(saved, "id", 1), whole(saved, "created", 0))
     species.last_improved = whole(saved, "last_improved", 0)
-    keys = rows(saved, "members")
+    keys = wholes(saved, "members")
     representative = whole(saved, "representative")
     strangers = [key for key in (representative, *keys) if key not in genomes]
     if strangers:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from difflib import get_close_matches
+from importlib.metadata import version
 from typing import Any
 
 import attrs
@@ -127,3 +128,7 @@ class GenomeOptions:
     enabled_mutate_rate: float = probability(0.5)
     bias: BiasOptions = attrs.field(factory=BiasOptions, validator=instance_of(BiasOptions))
     weight: WeightOptions = attrs.field(factory=WeightOptions, validator=instance_of(WeightOptions))
+
+    def provenance(self) -> dict[str, str]:
+        """Return the version of the library that breeds the genomes."""
+        return {"neat-python": version("neat-python")}

@@ -11,15 +11,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe import InputError
+from evoframe import Design, InputError
 
-__all__ = ["CONTRACTILE", "EMPTY", "PASSIVE", "read_bodies"]
+__all__ = ["CONTRACTILE", "EMPTY", "PASSIVE", "check_design", "read_bodies"]
 
 EMPTY, PASSIVE, CONTRACTILE = 0, 1, 3
 """Material codes (3, not 2, is what the authors feed to the controller network and write to files)."""
 
 _MOST_CELLS = 2**24
+_MOST_CYCLES = 1e6  # beyond, single precision knows no fraction of a cycle
 _KEYS = ("material", "phase_cycles")
+
+
+def check_design(design: Design) -> None:
+    """Refuse a design that is no body with a controller; what its cells hold is checked by the solver.
+
+    Raises:
+        InputError: Says what is wrong with its arrays.
+    """
+    material, phase = design.roles["morphology"], design.roles["controller"]
+    if material.ndim != 3 or material.dtype != np.uint8:
+        raise InputError(f"morphology is {_described(material)}; expected uint8[X, Y, Z]")
+    if phase.shape != material.shape or phase.dtype != np.float64:
+        raise InputError(f"controller is {_described(phase)}; expected float64{list(material.shape)}")
+
+
+def _described(array: NDArray[Any]) -> str:
+    return f"{array.dtype}{list(array.shape)}"
 
 
 def read_bodies(path: Path) -> Iterator[tuple[str, NDArray[np.uint8], NDArray[np.float64]]]:
@@ -91,4 +109,7 @@ def _phases(path: Path, phase: NDArray[Any], shape: tuple[int, ...]) -> NDArray[
         raise InputError(f"{path}: phase_cycles has the type {phase.dtype}; expected numbers")
     if not np.isfinite(phase).all():
         raise InputError(f"{path}: phase_cycles has a value that is not finite")
+    largest = float(np.abs(phase).max())
+    if largest > _MOST_CYCLES:
+        raise InputError(f"{path}: phase_cycles has the value {largest:g}; at most {_MOST_CYCLES:g} cycles")
     return phase.astype(np.float64)

@@ -21,7 +21,7 @@ def sample_steps(time_step: float, steps: int, record: Record) -> NDArray[np.int
     Returns:
         Ascending step numbers, ``int64[samples]``; 0 is the state before the first step.
     """
-    taken = []
+    taken: list[int] = []
     time, due = 0.0, 0.0
     for step in range(1, steps + 1):
         time += time_step

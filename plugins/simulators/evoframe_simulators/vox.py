@@ -15,14 +15,14 @@ from attrs import validators
 from numpy.typing import NDArray
 
 import evoframe_libvox as libvox
-from evoframe import ConfigurationError, Design, Outcome, Record
-from evoframe_simulators.bodies import CONTRACTILE, PASSIVE, read_bodies
+from evoframe import ConfigurationError, Design, InputError, Outcome, Record
+from evoframe_simulators.bodies import CONTRACTILE, PASSIVE, check_design, read_bodies
 from evoframe_simulators.sampling import sample_steps
 
 __all__ = ["Vox"]
 
-_POSITIVE = validators.gt(0)
-_NOT_NEGATIVE = validators.ge(0)
+_POSITIVE = validators.gt(0.0)
+_NOT_NEGATIVE = validators.ge(0.0)
 
 
 @attrs.frozen
@@ -54,12 +54,12 @@ class Vox:
     """
 
     requires: ClassVar[tuple[str, ...]] = ("morphology", "controller")
-    tracks: ClassVar[tuple[str, ...]] = ("tip", "face", "body")
+    tracks: ClassVar[tuple[libvox.Track, ...]] = ("tip", "face", "body")
 
     duration: float = attrs.field(default=0.07, validator=_POSITIVE)
     voxel_size: float = attrs.field(default=0.05, validator=_POSITIVE)
     youngs_modulus: float = attrs.field(default=5e6, validator=_POSITIVE)
-    poisson_ratio: float = attrs.field(default=0.35, validator=[validators.ge(0), validators.lt(0.5)])
+    poisson_ratio: float = attrs.field(default=0.35, validator=[validators.ge(0.0), validators.lt(0.5)])
     density: float = attrs.field(default=1e6, validator=_POSITIVE)
     expansion_coefficient: float = 0.01
     temperature_base: float = 25.0
@@ -68,7 +68,7 @@ class Vox:
     phase_unit: Literal["cycles", "radians"] = "cycles"
     self_collision: bool = True
     collision_horizon: float = attrs.field(default=2.0, validator=_POSITIVE)
-    time_step_fraction: float = attrs.field(default=0.9, validator=[validators.gt(0), validators.le(1)])
+    time_step_fraction: float = attrs.field(default=0.9, validator=[validators.gt(0.0), validators.le(1.0)])
     bond_damping: float = attrs.field(default=1.0, validator=_NOT_NEGATIVE)
     slow_damping: float = attrs.field(default=0.01, validator=_NOT_NEGATIVE)
 
@@ -103,10 +103,19 @@ class Vox:
         return digest.digest()
 
     def simulate(self, designs: Sequence[Design], record: Record) -> list[Outcome]:
-        """Return the outcome of each design, in order."""
+        """Return the outcome of each design, in order.
+
+        Raises:
+            InputError: A design is no body with a controller.
+        """
+        for design in designs:
+            check_design(design)
         outcomes: dict[int, Outcome] = {}
         for canvas, indices in _by_canvas(designs):
-            outcomes |= self._simulate(canvas, {index: designs[index] for index in indices}, record)
+            try:
+                outcomes |= self._simulate(canvas, {index: designs[index] for index in indices}, record)
+            except ValueError as error:  # the solver's words for what cells hold
+                raise InputError(str(error)) from error
         nothing = _nothing(record)
         return [outcomes.get(index, nothing) for index in range(len(designs))]
 
@@ -146,7 +155,8 @@ class Vox:
         for time_step in np.unique(time_steps):
             chosen = time_steps == time_step
             samples = sample_steps(float(time_step), int(steps[chosen][0]), record)
-            result = model.simulate(material[chosen], phase[chosen], samples, tracks=record.tracks)
+            tracks = tuple(track for track in self.tracks if track in record.tracks)
+            result = model.simulate(material[chosen], phase[chosen], samples, tracks)
             for row, number in enumerate(numbers[chosen].tolist()):
                 outcomes[number] = Outcome(
                     steps=samples,

@@ -85,6 +85,7 @@ Examples:
     "-p",
     "plugin",
     multiple=True,
+    is_eager=True,  # before --help, which lists the commands of plugins too
     metavar="MODULE",
     help="Use a plugin that is one local module: an importable name or a .py file. Repeatable.",
 )

@@ -34,6 +34,7 @@ Examples:
 class _Job:
     """The designs of one file, and the configuration that they are simulated with."""
 
+    path: Path
     config: RunConfig
     labels: tuple[str, ...]
     designs: tuple[Design, ...]
@@ -68,10 +69,10 @@ def simulate(
     """
     settings = [*overrides, *([] if workers is None else [f"executor.workers={workers}"])]
     jobs = [_read(path, preset, settings, plugins_of(ctx)) for path in files]
-    if trace is not None:
-        _write_trace(trace, jobs)
     labels = [label for job in jobs for label in job.labels]
     scores = [score for job in jobs for score in _evaluate(job)]
+    if trace is not None:
+        _write_trace(trace, jobs)
     if as_json:
         click.echo(_json(scores))
     else:
@@ -86,13 +87,13 @@ def _read(path: Path, preset: str | None, overrides: list[str], plugins: Plugins
             preset or "paper", tables=tables, origin=str(path), overrides=overrides, plugins=plugins
         )
         _check_roles(path, design, config)
-        return _Job(config, (path.name,), (design,))
+        return _Job(path, config, (path.name,), (design,))
     config = load_config(preset or "paper", overrides=overrides, plugins=plugins)
     read = getattr(config.simulator.component, "read", None)
     if read is None:
         raise ConfigurationError(f"the simulator '{config.simulator.name}' reads no files")
     labels, designs = zip(*read(path), strict=True)
-    return _Job(config, labels, designs)
+    return _Job(path, config, labels, designs)
 
 
 def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
@@ -108,6 +109,8 @@ def _evaluate(job: _Job) -> list[Score]:
     )
     try:
         return evaluator.evaluate(job.designs)
+    except InputError as error:
+        raise InputError(f"{job.path}: {error}") from error
     finally:
         evaluator.close()
 

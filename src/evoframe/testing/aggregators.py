@@ -117,8 +117,7 @@ class AggregatorContract(ComponentContract[Aggregator]):
 
     def scores(self, low: float, high: float) -> st.SearchStrategy[list[float]]:
         """Return lists of scores from *low* to *high* in the accepted numbers."""
-        score = _floats(low, high)
-        return self.sizes().flatmap(lambda n: st.lists(score, min_size=n, max_size=n))
+        return self.sizes().flatmap(lambda n: _lists(low, high, n))
 
     def _domain(self) -> tuple[float, float]:
         low, high = self.component.domain
@@ -144,9 +143,15 @@ def _array(scores: list[float]) -> Scores:
 
 
 def _floats(low: float, high: float) -> st.SearchStrategy[float]:
-    """Return numbers of all magnitudes, and often of one: that is where averages differ the least."""
-    plain = st.floats(low, high)
-    like_displacements = [
-        value for value in (-0.01, -1e-6, 0.0, 1e-6, 0.004, 0.005, 1.0) if low <= value <= high
-    ]
-    return plain | st.sampled_from(like_displacements) if like_displacements else plain
+    """Return numbers of all magnitudes, and often the ends, the smallest ones and some like displacements."""
+    special = (low, -0.01, -5e-324, 0.0, 5e-324, 1e-6, 0.004, 0.005, 1.0, high)
+    return st.floats(low, high) | st.sampled_from([value for value in special if low <= value <= high])
+
+
+def _lists(low: float, high: float, n: int) -> st.SearchStrategy[list[float]]:
+    """Return lists of *n* scores; half of them have two values only, so that scores meet their equals."""
+    score = _floats(low, high)
+    two_values = st.tuples(score, score).map(st.sampled_from)
+    return st.lists(score, min_size=n, max_size=n) | two_values.flatmap(
+        lambda value: st.lists(value, min_size=n, max_size=n)
+    )

@@ -70,6 +70,15 @@ class EvolverContract(ComponentContract[Evolver]):
                 dumped = _text(run.dump(genome))
                 assert known.setdefault(member.id, dumped) == dumped
 
+    def test_genomes_are_those_of_the_last_ask(self) -> None:
+        """Before and after they are told about."""
+        run = self.start()
+        for _ in range(self.turns):
+            asked = _dumped(run, run.ask())
+            assert _dumped(run, run.genomes()) == asked
+            self._tell(run, run.genomes())
+            assert _dumped(run, run.genomes()) == asked
+
     def test_members_have_the_fitness_that_was_told_in_order(self) -> None:
         """Before it is told, the initial members have none."""
         run = self.start()
@@ -108,11 +117,12 @@ class EvolverContract(ComponentContract[Evolver]):
             restored = self.start(seed=turn + 100)
             restored.restore(json.loads(_text(run.state())))
             assert list(restored.members()) == list(run.members())
+            assert _dumped(restored, restored.genomes()) == _dumped(run, run.genomes())
             assert _text(restored.state()) == _text(run.state())
             assert self._history(restored, self.turns - turn - 1) == expected[turn + 1 :]
 
     def test_looking_changes_nothing(self) -> None:
-        """``state``, ``members``, ``express`` and ``dump`` may be called at any time."""
+        """``state``, ``members``, ``genomes``, ``express`` and ``dump`` may be called at any time."""
         run, looked_at = self.start(), []
         for _ in range(self.turns):
             genomes = run.ask()
@@ -204,7 +214,7 @@ class EvolverContract(ComponentContract[Evolver]):
         fitness, measures = self.judge(run, genomes)
         run.tell(fitness, measures)
         members = [str(member) for member in run.members()]
-        return _text([[run.dump(genome) for genome in genomes], members, fitness.tolist()])
+        return _text([_dumped(run, genomes), members, fitness.tolist()])
 
     def _history(self, run: EvolverRun, turns: int | None = None) -> list[str]:
         return [self._turn(run) for _ in range(self.turns if turns is None else turns)]
@@ -212,6 +222,7 @@ class EvolverContract(ComponentContract[Evolver]):
     def _look(self, run: EvolverRun, genomes: Sequence[Any]) -> None:
         run.state()
         run.members()
+        run.genomes()
         for genome in genomes:
             run.express(genome)
             run.dump(genome)
@@ -229,6 +240,10 @@ class EvolverContract(ComponentContract[Evolver]):
 
 def _with_last(value: float, fitness: Floats) -> Floats:
     return np.append(fitness[:-1], value)
+
+
+def _dumped(run: EvolverRun, genomes: Sequence[Any]) -> list[str]:
+    return [_text(run.dump(genome)) for genome in genomes]
 
 
 def _text(value: Any) -> str:

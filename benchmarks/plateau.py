@@ -1,0 +1,123 @@
+"""Does evolution get beyond a bar in which every interior voxel contracts?
+
+Compares the best pair of many seeds of the presets ``paper`` and ``authors-rates`` with random search (the
+same loop with the evolver ``random``) and with the all-contractile body at its best common phase offset
+(paper.md, "Expect a plateau").
+
+    python -m benchmarks.plateau --seeds 10 --out DIR
+"""
+
+from __future__ import annotations
+
+import argparse
+import concurrent.futures
+import json
+import os
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import evoframe
+
+RANDOM = ["populations.morphology.evolver=random", "populations.controller.evolver=random"]
+DEEP = ["populations.morphology.evolver.mutations=20", "populations.controller.evolver.mutations=20"]
+CONFIGURATIONS: dict[str, tuple[str, list[str]]] = {
+    "paper": ("paper", []),
+    "authors-rates": ("authors-rates", []),
+    "random search": ("paper", RANDOM),
+    "random search, up to 20 mutations": ("paper", [*RANDOM, *DEEP]),
+}
+THRESHOLD = 0.006  # m
+
+
+def run_one(name: str, seed: int, out: Path) -> Path:
+    """Run a configuration in a process of its own, unless that was done before."""
+    preset, settings = CONFIGURATIONS[name]
+    directory = out / f"{name.replace(' ', '-').replace(',', '')}-{seed}"
+    if not directory.exists() or not evoframe.load_run(directory).summary:
+        options = [option for setting in settings for option in ("--set", setting)]
+        command = ["-q", "run", preset, "--seed", str(seed), "--workers", "1", "--out", str(directory)]
+        subprocess.run(
+            [sys.executable, "-m", "evoframe", *command, *options], check=True, stdout=subprocess.DEVNULL
+        )
+    return directory
+
+
+def best_within(finished: evoframe.Run, simulations: float) -> float:
+    """Return the displacement of the best pair among the first so many simulations."""
+    spent, turn = 0, 0
+    for row in finished.workload:
+        spent += row["simulations"]
+        if spent > simulations:
+            break
+        turn = row["turn"]
+    return max(row["score"] for row in finished.table("champions") if row["turn"] <= turn)
+
+
+def all_contractile() -> tuple[float, float]:
+    """Return the best common offset of the all-contractile body, in cycles, and its displacement."""
+    config = evoframe.load_config("paper")
+    simulator, objective = config.simulator.component, config.objective.component
+    material = np.ones((20, 8, 8), np.uint8)
+    material[1:-1, 1:-1, 1:-1] = 3
+    offsets = np.linspace(-0.5, 0.5, 201)
+    designs = [
+        evoframe.Design({"morphology": material, "controller": np.full(material.shape, offset)})
+        for offset in offsets
+    ]
+    scores = [objective.score(outcome) for outcome in simulator.simulate(designs, objective.record)]
+    best = int(np.argmax(scores))
+    return float(offsets[best]), scores[best]
+
+
+def describe(name: str, runs: list[evoframe.Run], budget: float) -> dict[str, Any]:
+    """Return the figures of one configuration."""
+    best = [run.champion.displacement for run in runs]
+    low, median, high = statistics.quantiles(best, n=4, method="inclusive")
+    return {
+        "configuration": name,
+        "runs": len(runs),
+        "median": median,
+        "quartiles": [low, high],
+        "least and greatest": [min(best), max(best)],
+        "share above 0.006 m": sum(value > THRESHOLD for value in best) / len(best),
+        "median simulations": statistics.median(simulations(run) for run in runs),
+        "median of the best within the budget": statistics.median(best_within(run, budget) for run in runs),
+    }
+
+
+def simulations(finished: evoframe.Run) -> int:
+    """Return how many simulations a run made."""
+    return sum(row["simulations"] for row in finished.workload)
+
+
+def main() -> None:
+    """Run what is missing, then print the table as JSON."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--out", type=Path, default=Path("runs/plateau"))
+    options = parser.parse_args()
+    jobs = [(name, seed) for seed in range(1, options.seeds + 1) for name in CONFIGURATIONS]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        directories = list(pool.map(lambda job: run_one(*job, options.out), jobs))
+    runs: dict[str, list[evoframe.Run]] = {name: [] for name in CONFIGURATIONS}
+    for (name, _), directory in zip(jobs, directories, strict=True):
+        runs[name].append(evoframe.load_run(directory))
+    budget = statistics.median(simulations(run) for run in runs["paper"])
+    offset, displacement = all_contractile()
+    report = {
+        "budget": budget,
+        "all-contractile body": {"offset (cycles)": offset, "displacement": displacement},
+        "configurations": [describe(name, runs[name], budget) for name in CONFIGURATIONS],
+    }
+    sys.stdout.write(json.dumps(report, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()

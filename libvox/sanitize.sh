@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Runs the solver's tests with the address and undefined-behaviour sanitizers, and a program in C with the leak
+# sanitizer too (Python itself leaks). Everything it builds is in a directory that it removes.
+#
+#   PYTHON=/path/to/python libvox/sanitize.sh [pytest options]
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+python=${PYTHON:-python3}
+compiler=${CC:-cc}
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+
+flags=(-std=c11 -g -O1 -Wall -Wextra -Wconversion -Wshadow -Werror -fsanitize=address,undefined -fno-sanitize-recover=all)
+"$compiler" "${flags[@]}" -I "$root/libvox/include" "$root/tests/libvox/embed.c" "$root"/libvox/*.c -o "$place/embed" -lm
+"$place/embed"
+
+EVOFRAME_SANITIZE=1 "$python" - "$root" "$place" <<'END'
+import runpy
+import sys
+
+root, place = sys.argv[1:]
+runpy.run_path(f"{root}/libvox/build_ffi.py")["ffibuilder"].compile(tmpdir=place)
+END
+cp "$root"/libvox/evoframe_libvox/*.py "$place/evoframe_libvox/"
+
+# The interpreter was built without the sanitizer, so its runtime has to be there first.
+export LD_PRELOAD=$("$compiler" -print-file-name=libasan.so)
+export ASAN_OPTIONS=detect_leaks=0
+export PYTHONMALLOC=malloc # so that the sanitizer sees NumPy's and cffi's buffers
+export PYTHONPATH=$place PYTHONDONTWRITEBYTECODE=1
+cd "$root"
+found=$("$python" -c 'import evoframe_libvox; print(evoframe_libvox.__file__)')
+[[ $found == "$place"/* ]] || { echo "expected the sanitized build in $place, found $found" >&2; exit 1; }
+"$python" -m pytest -p no:cacheprovider tests/libvox "$@"

@@ -1,0 +1,198 @@
+"""What everyone expects of a command."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import evoframe as package
+
+Evoframe = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def test_says_its_version(evoframe: Evoframe) -> None:
+    assert evoframe("--version").stdout == f"evoframe {package.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        [],
+        ["run"],
+        ["simulate"],
+        ["plugins"],
+        ["plugins", "list"],
+        ["config"],
+        ["config", "show"],
+        ["completion"],
+    ],
+)
+def test_every_command_has_help(evoframe: Evoframe, command: list[str]) -> None:
+    helped = evoframe(*command, "--help")
+    assert helped.returncode == 0
+    assert "Usage: evoframe" in helped.stdout
+
+
+@pytest.mark.parametrize(
+    "command", [["run"], ["simulate"], ["plugins", "list"], ["config", "show"], ["completion"]]
+)
+def test_help_has_examples(evoframe: Evoframe, command: list[str]) -> None:
+    assert re.search(r"Examples?:\n\s+\S*.*evoframe", evoframe(*command, "-h").stdout)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_shells_complete(evoframe: Evoframe, shell: str) -> None:
+    assert "_EVOFRAME_COMPLETE" in evoframe("completion", shell).stdout
+
+
+def test_presets_are_completed(evoframe: Evoframe) -> None:
+    completed = evoframe(COMP_WORDS="evoframe run pa", COMP_CWORD="2", _EVOFRAME_COMPLETE="bash_complete")
+    assert "plain,paper" in completed.stdout
+
+
+def test_config_show_prints_what_can_be_run(evoframe: Evoframe, tmp_path: Path) -> None:
+    shown = evoframe("config", "show", "quick", "--set", "aggregator=hm")
+    assert shown.returncode == 0
+    tables = tomllib.loads(shown.stdout)
+    assert tables["aggregator"] == {"name": "hm", "floor": 1e-5, "clip": False}
+    (tmp_path / "shown.toml").write_text(shown.stdout)
+    assert evoframe("config", "show", "shown.toml").stdout == shown.stdout
+
+
+def test_unknown_commands_are_refused(evoframe: Evoframe) -> None:
+    refused = evoframe("rnu")
+    assert refused.returncode == 2
+    assert "No such command 'rnu'" in refused.stderr
+
+
+PLUGIN = """
+import attrs, click
+from evoframe import hookimpl
+
+@attrs.frozen
+class Worst:
+    domain = (-1e100, 1e100)
+    def check(self, n): pass
+    def aggregate(self, scores): return float(min(scores))
+
+@hookimpl
+def evoframe_aggregators():
+    return {"lowest": Worst}
+
+@hookimpl
+def evoframe_commands(cli):
+    @cli.command()
+    def greet():
+        click.echo("hello")
+"""
+
+
+def test_a_local_module_is_a_plugin_with_components_and_commands(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(PLUGIN)
+    assert evoframe("-p", "mine", "greet").stdout == "hello\n"
+    assert "greet" in evoframe("-p", "mine", "--help").stdout
+    ran = evoframe(
+        "-p", "mine.py", "run", "quick", "--set", "aggregator=lowest", "--set", "run.generations=1"
+    )
+    assert ran.returncode == 0, ran.stderr
+    missing = evoframe("-p", "theirs", "run", "quick")
+    assert missing.returncode == 2
+    assert "plugin module 'theirs' cannot be used: ModuleNotFoundError" in missing.stderr
+
+
+class TestRun:
+    def test_ends_with_a_summary_and_the_directory(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        ran = evoframe("run", "quick", "--seed", 4)
+        assert ran.returncode == 0
+        champion = package.load_run(tmp_path / "runs" / "quick-4").champion
+        assert repr(champion.displacement) in ran.stdout
+        assert "runs/quick-4" in ran.stdout
+        assert re.search(r"turn 10/10 .* morphology \S+ .* controller \S+ .* sim/s .*% cached", ran.stderr)
+
+    def test_quiet_says_only_where_the_run_is(self, evoframe: Evoframe) -> None:
+        ran = evoframe("-q", "run", "quick", "--set", "run.generations=0")
+        assert (ran.stdout, ran.stderr) == ("runs/quick-1\n", "")
+
+    def test_no_colour_where_there_is_no_terminal_or_none_is_wanted(self, evoframe: Evoframe) -> None:
+        ran = evoframe("run", "quick", "--set", "run.generations=0", NO_COLOR="1", FORCE_COLOR="1")
+        assert not re.search(r"\x1b\[[0-9;]*3[0-7]m", ran.stdout + ran.stderr)
+
+    def test_a_directory_that_is_in_use_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        assert evoframe("run", "quick", "--set", "run.generations=0", "--out", "here").returncode == 0
+        before = (tmp_path / "here" / "run.db").read_bytes()
+        again = evoframe("run", "quick", "--set", "run.generations=0", "--out", "here")
+        assert again.returncode == 2
+        assert (
+            again.stderr.splitlines()[-1] == "Error: here: is not empty; choose another directory with --out"
+        )
+        assert (tmp_path / "here" / "run.db").read_bytes() == before
+
+    def test_interrupt_stops_after_the_turn_and_keeps_it(self, tmp_path: Path) -> None:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "evoframe", "run", "--out", "here"],
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        while not (tmp_path / "here" / "champion.json").exists():
+            time.sleep(0.05)
+        os.kill(process.pid, signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        assert process.returncode == 130
+        assert "Interrupted; all turns up to here are saved in here" in errors
+        assert "Traceback" not in errors
+        turns = package.load_run(tmp_path / "here").turns
+        assert 2 <= len(turns) < 401
+
+
+FAULTS = [
+    (
+        ["--set", "aggregator=wn"],
+        ["--set aggregator=wn: aggregator: unknown aggregator 'wn'; did you mean 'wm'?"],
+    ),
+    (["--set", "collaboration.n=4"], ["aggregator", "wm has no weights for 4 collaborators"]),
+    (["--set", "collaboration.n=30"], ["--set collaboration.n=30: collaboration: ", "30", "25"]),
+    (["--set", "simulator.step=1"], ["--set simulator.step=1: simulator.step: unknown option"]),
+    (["--set", "run.generations=many"], ['run.generations: expected a whole number, found "many"']),
+    (["nowhere.toml"], ["nowhere.toml: cannot be read: No such file or directory"]),
+    (["papre"], ["there is no preset 'papre'; did you mean 'paper'?"]),
+    (
+        ["--set", "aggregator=wn", "--set", "collaboration.n=30"],
+        ["2 faults", "aggregator=wn", "collaboration.n=30"],
+    ),
+    (["bad.toml"], ["bad.toml: aggregator.weights[1]: expected a number", "bad.toml: simulatr: unknown key"]),
+    (["syntax.toml"], ["syntax.toml: not valid TOML"]),
+    (["--seed", "-1"], ["-1"]),
+]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "messages"), FAULTS, ids=lambda value: " ".join(value) if value else ""
+)
+def test_a_users_mistake_is_one_clear_message_and_leaves_nothing(
+    evoframe: Evoframe, tmp_path: Path, arguments: list[str], messages: list[str]
+) -> None:
+    (tmp_path / "bad.toml").write_text('[simulatr]\nx = 1\n[aggregator]\nname = "wm"\nweights = [0.5, "a"]\n')
+    (tmp_path / "syntax.toml").write_text("[run\n")
+    failed = evoframe("run", *arguments)
+    assert failed.returncode == 2
+    assert "Traceback" not in failed.stderr
+    for message in messages:
+        assert message in failed.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.toml", "syntax.toml"]
+
+
+def test_python_m_and_the_script_are_the_same() -> None:
+    script = Path(sys.executable).with_name("evoframe")
+    assert subprocess.run(
+        [script, "--version"], capture_output=True, text=True, check=True
+    ).stdout.startswith("evoframe")

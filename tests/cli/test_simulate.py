@@ -1,0 +1,186 @@
+"""``evoframe simulate``."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+Evoframe = Callable[..., subprocess.CompletedProcess[str]]
+
+DATA = Path(__file__).parents[1] / "data"
+GOLDEN = DATA / "paper_preset.npz"
+
+
+@pytest.fixture(scope="module")
+def golden() -> dict[str, Any]:
+    with np.load(GOLDEN) as arrays:
+        return dict(arrays)
+
+
+@pytest.fixture
+def one_body(golden: dict[str, Any], tmp_path: Path) -> Path:
+    path = tmp_path / "body.npz"
+    np.savez(path, material=golden["material"][3], phase_cycles=golden["phase_cycles"][3])
+    return path
+
+
+def test_agrees_with_the_reference(evoframe: Evoframe, golden: dict[str, Any]) -> None:
+    result = json.loads(evoframe("simulate", GOLDEN, "--json").stdout)
+    assert result["diverged"] == [False] * 36
+    assert np.abs(np.array(result["displacement"]) - golden["displacement"]).max() < 1e-9
+
+
+def test_without_json_prints_a_row_for_each_body(evoframe: Evoframe, one_body: Path) -> None:
+    exact = json.loads(evoframe("simulate", one_body, "--json").stdout)["displacement"][0]
+    printed = evoframe("simulate", one_body, GOLDEN, "--workers", 2).stdout
+    assert [line.split()[0] for line in printed.splitlines()[1:3]] == ["body.npz", "paper_preset.npz[0]"]
+    assert repr(exact) in printed
+
+
+def test_settings_can_be_changed(evoframe: Evoframe, golden: dict[str, Any], tmp_path: Path) -> None:
+    path = tmp_path / "published.npz"
+    np.savez(path, material=golden["material"][[0, 3, 6]], phase_cycles=golden["phase_cycles"][[0, 3, 6]])
+    still = evoframe("simulate", path, "--json", "--set", "simulator.expansion_coefficient=0")
+    displacement = json.loads(still.stdout)["displacement"]
+    assert displacement == pytest.approx([0.0011106, 0.0019527, 0.0020189], abs=5e-8)
+
+
+def test_a_trace_has_a_row_for_each_step(
+    evoframe: Evoframe, golden: dict[str, Any], one_body: Path, tmp_path: Path
+) -> None:
+    trace = tmp_path / "trace.csv"
+    assert evoframe("simulate", one_body, "--trace", trace).returncode == 0
+    with trace.open() as file:
+        rows = list(csv.DictReader(file))
+    assert ",".join(rows[0]) == "step,time,tip_x,tip_y,tip_z,face_x,face_y,face_z,body_x,body_y,body_z"
+    assert [int(row["step"]) for row in rows] == list(range(23))
+    times = np.array([float(row["time"]) for row in rows])
+    tip = np.array([[float(row[f"tip_{axis}"]) for axis in "xyz"] for row in rows])
+    face = np.array([[float(row[f"face_{axis}"]) for axis in "xyz"] for row in rows])
+    assert np.abs(times - golden["time"]).max() < 1e-12
+    assert np.abs(tip - golden["tip"][3]).max() < 1e-9
+    assert np.abs(face - golden["free_face_mean"][3]).max() < 1e-9
+
+
+def test_a_trace_of_several_bodies_is_refused(evoframe: Evoframe, tmp_path: Path) -> None:
+    refused = evoframe("simulate", GOLDEN, "--trace", tmp_path / "trace.csv")
+    assert refused.returncode == 2
+    assert "--trace writes the trace of one body, but 36 were given" in refused.stderr
+
+
+def test_a_simulation_that_diverges_is_said_to(evoframe: Evoframe, one_body: Path) -> None:
+    wild = ["--set", "simulator.bond_damping=1e4"]
+    result = json.loads(evoframe("simulate", one_body, "--json", *wild).stdout)
+    assert result == {"displacement": [None], "diverged": [True]}
+    assert "diverged at step" in evoframe("simulate", one_body, *wild).stdout
+
+
+def arrays(**given: Any) -> Callable[[Path], None]:
+    return lambda path: np.savez(path, **given)
+
+
+CELLS = (4, 2, 2)
+SOLID = np.ones(CELLS, np.uint8)
+ZERO = np.zeros(CELLS)
+
+
+@pytest.mark.parametrize(
+    ("write", "message"),
+    [
+        (None, "cannot be read: No such file"),
+        (Path.mkdir, "cannot be read: Is a directory"),
+        (lambda path: path.write_bytes(b""), "is no .npz file"),
+        (lambda path: path.write_bytes(b"\x89PNG\r\n" + bytes(100)), "is no .npz file"),
+        (lambda path: path.write_bytes(GOLDEN.read_bytes()[:5000]), "is no .npz file"),
+        (arrays(bodies=SOLID), "has no array 'material'; expected material and phase_cycles, found bodies"),
+        (arrays(material=SOLID), "has no array 'phase_cycles'"),
+        (arrays(material=np.array([{}]), phase_cycles=ZERO), "is no .npz file"),
+        (arrays(material=SOLID[0], phase_cycles=ZERO), "material has the shape [2, 2]; expected [X, Y, Z]"),
+        (arrays(material=SOLID[:0], phase_cycles=ZERO[:0]), "material has the shape [0, 2, 2]"),
+        (arrays(material=SOLID * 2, phase_cycles=ZERO), "material has the code 2; codes: 0 empty"),
+        (
+            arrays(material=SOLID * 1.0, phase_cycles=ZERO),
+            "material has the type float64; expected whole numbers",
+        ),
+        (arrays(material=SOLID * 0, phase_cycles=ZERO), "body 0 has no voxel"),
+        (
+            arrays(material=SOLID, phase_cycles=ZERO[1:]),
+            "phase_cycles has the shape [3, 2, 2], but material has",
+        ),
+        (arrays(material=SOLID, phase_cycles=ZERO * np.nan), "phase_cycles has a value that is not finite"),
+        (arrays(material=SOLID, phase_cycles=np.full(CELLS, "x")), "phase_cycles has the type"),
+        (
+            arrays(material=SOLID, phase_cycles=ZERO + 1e300),
+            "phase_cycles has the value 1e+300; at most 1e+06 cycles",
+        ),
+    ],
+)
+def test_what_is_no_body_is_refused_by_name(
+    evoframe: Evoframe, tmp_path: Path, write: Any, message: str
+) -> None:
+    path = tmp_path / "given.npz"
+    if write is not None:
+        write(path)
+    refused = evoframe("simulate", path)
+    assert refused.returncode == 2
+    assert "Traceback" not in refused.stderr
+    assert f"{path}: " in refused.stderr
+    assert message in refused.stderr
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"format": 1}', "[]"])
+def test_what_is_no_champion_is_refused_by_name(evoframe: Evoframe, tmp_path: Path, text: str) -> None:
+    path = tmp_path / "given.json"
+    path.write_text(text)
+    refused = evoframe("simulate", path)
+    assert (refused.returncode, str(path) in refused.stderr, "Traceback" in refused.stderr) == (
+        2,
+        True,
+        False,
+    )
+
+
+class TestChampion:
+    @pytest.fixture
+    def champion(self, evoframe: Evoframe, tmp_path: Path) -> Path:
+        assert evoframe("run", "quick", "--set", "objective=face-yz", "--out", "here").returncode == 0
+        return tmp_path / "here" / "champion.json"
+
+    def test_gives_its_displacement_again_to_the_last_bit(self, evoframe: Evoframe, champion: Path) -> None:
+        recorded = json.loads(champion.read_text())["displacement"]
+        assert json.loads(evoframe("simulate", champion, "--json").stdout)["displacement"] == [recorded]
+
+    def test_is_simulated_as_a_preset_does_on_demand(self, evoframe: Evoframe, champion: Path) -> None:
+        recorded = json.loads(champion.read_text())["displacement"]
+        [other] = json.loads(evoframe("simulate", champion, "--preset", "paper", "--json").stdout)[
+            "displacement"
+        ]
+        assert other != recorded
+
+    def test_with_a_setting_that_does_not_exist_names_the_file(
+        self, evoframe: Evoframe, champion: Path
+    ) -> None:
+        document = json.loads(champion.read_text())
+        document["simulation"]["simulator"]["speed"] = 3
+        champion.write_text(json.dumps(document))
+        refused = evoframe("simulate", champion)
+        assert refused.returncode == 2
+        assert f"{champion}: simulator.speed: unknown option" in refused.stderr
+
+    def test_with_a_design_of_another_simulator_is_refused(self, evoframe: Evoframe, champion: Path) -> None:
+        document = json.loads(champion.read_text())
+        document["design"]["morphology"]["values"][0] = 7
+        champion.write_text(json.dumps(document))
+        refused = evoframe("simulate", champion)
+        assert refused.returncode == 2
+        assert "Traceback" not in refused.stderr
+        del document["design"]["controller"]
+        champion.write_text(json.dumps(document))
+        assert f"{champion}: design: has no controller" in evoframe("simulate", champion).stderr

@@ -1,0 +1,279 @@
+"""A run as a whole, with toys: its directory, its record, its observers."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import statistics
+import types
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import toys
+
+from evoframe import InputError, PluginWarning, RunConfig, Turn, hookimpl, load_run, run
+from evoframe.plugins import Plugins, Source
+from evoframe.run import default_directory, execute
+from evoframe.store import design_from_json, design_to_json, read_champion
+
+Load = Callable[..., RunConfig]
+
+
+def rows(directory: Path, table: str) -> list[tuple[Any, ...]]:
+    with sqlite3.connect(directory / "run.db") as database:
+        return database.execute(f'SELECT * FROM "{table}"').fetchall()  # noqa: S608
+
+
+class TestDirectory:
+    def test_holds_configuration_database_and_champion(self, toy_config: Load, tmp_path: Path) -> None:
+        finished = run(toy_config(), out=tmp_path / "run")
+        assert sorted(path.name for path in finished.directory.iterdir()) == [
+            "champion.json",
+            "config.toml",
+            "run.db",
+        ]
+
+    def test_the_recorded_configuration_runs_again_to_the_same_end(
+        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+    ) -> None:
+        first = run(toy_config("run.seed=8"), out=tmp_path / "first")
+        second = run(first.directory / "config.toml", out=tmp_path / "second", plugins=toy_plugins)
+        for table in ("turns", "individuals", "pairs", "champions", "state", "meta"):
+            assert rows(first.directory, table) == rows(second.directory, table)
+        assert (first.directory / "champion.json").read_bytes() == (
+            second.directory / "champion.json"
+        ).read_bytes()
+
+    def test_has_one_row_a_turn_an_individual_and_a_pair(self, toy_config: Load, tmp_path: Path) -> None:
+        finished = run(toy_config(), out=tmp_path / "run")
+        assert len(finished.turns) == 2 + 8
+        assert len(finished.individuals) == (6 + 5) + 4 * (6 + 5)
+        assert len(finished.pairs) == 30 + 4 * 2 * (6 + 5)
+        assert [row["turn"] for row in finished.workload] == list(range(9))
+        assert {row["part"] for row in finished.table("state")} == {"loop", "population/a", "population/b"}
+
+    def test_the_recorded_fitness_follows_from_the_recorded_scores(
+        self, toy_config: Load, tmp_path: Path
+    ) -> None:
+        finished = run(toy_config("run.generations=10"), out=tmp_path / "run")
+        for individual in finished.individuals:
+            name, genome, turn = individual["population"], individual["genome"], individual["turn"]
+            scores = [p["score"] for p in finished.pairs if p["turn"] == turn and p[name] == genome]
+            assert individual["fitness"] == pytest.approx(statistics.fmean(scores), rel=1e-12)
+
+    def test_the_champion_is_the_best_pair_of_the_database(self, toy_config: Load, tmp_path: Path) -> None:
+        finished = run(toy_config("run.generations=10"), out=tmp_path / "run")
+        best = max(pair["score"] for pair in finished.pairs)
+        assert finished.champion.displacement == best == finished.summary["best_pair_displacement"]
+        assert finished.table("champions")[-1]["score"] == best
+        roles = finished.champion.design.roles
+        assert roles["a"][0] * roles["b"][0] == best
+
+    def test_the_summary_names_the_fittest_and_their_displacement(
+        self, toy_config: Load, tmp_path: Path
+    ) -> None:
+        finished = run(toy_config(), out=tmp_path / "run")
+        last = {row["population"]: row for row in finished.turns}
+        for name, fittest in finished.summary["fittest"].items():
+            assert fittest["fitness"] == last[name]["best"]
+        assert finished.summary["turns"] == 8
+
+    def test_the_champion_file_has_nothing_of_this_machine(self, toy_config: Load, tmp_path: Path) -> None:
+        finished = run(toy_config(), out=tmp_path / "a-name-to-find")
+        text = (finished.directory / "champion.json").read_text()
+        assert "a-name-to-find" not in text
+        assert set(json.loads(text)) == {
+            "format", "displacement", "turn", "genome_ids", "simulation", "design", "genomes",
+        }  # fmt: skip
+
+    def test_the_provenance_names_versions_and_distributions(self, toy_config: Load, tmp_path: Path) -> None:
+        provenance = run(toy_config(), out=tmp_path / "run").config["provenance"]
+        assert provenance["components"]["aggregator"] == "'toys' of toy-box 1.0"
+        assert {"python", "numpy"} <= set(provenance["libraries"])
+
+    def test_one_that_is_not_empty_is_refused_and_left_alone(self, toy_config: Load, tmp_path: Path) -> None:
+        (tmp_path / "mine.txt").write_text("precious")
+        with pytest.raises(InputError, match="is not empty; choose another directory with --out"):
+            run(toy_config(), out=tmp_path)
+        assert (tmp_path / "mine.txt").read_text() == "precious"
+        assert not (tmp_path / "run.db").exists()
+
+    def test_one_that_is_a_file_is_refused(self, toy_config: Load, toy_file: Path) -> None:
+        with pytest.raises(InputError, match="cannot be used for a run"):
+            run(toy_config(), out=toy_file)
+
+    def test_the_default_one_counts(
+        self, toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.chdir(tmp_path)
+        names = []
+        for _ in range(3):
+            directory = default_directory(toy_config())
+            names.append(str(directory))
+            directory.mkdir(parents=True)
+        assert names == ["runs/toy-3", "runs/toy-3-2", "runs/toy-3-3"]
+
+
+class TestPython:
+    def test_settings_are_keyword_arguments(
+        self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path
+    ) -> None:
+        finished = run(
+            toy_file,
+            seed=5,
+            out=tmp_path / "run",
+            plugins=toy_plugins,
+            collaboration={"n": 3},
+            **{"run.generations": 1},
+        )
+        assert finished.config["run"] == {"seed": 5, "generations": 1}
+        assert finished.config["collaboration"] == {"name": "toy-first", "n": 3}
+
+    def test_what_is_no_run_is_refused(self, tmp_path: Path) -> None:
+        with pytest.raises(InputError, match="is no run's directory"):
+            load_run(tmp_path)
+        (tmp_path / "config.toml").write_text("[run]")
+        with pytest.raises(InputError, match=r"run\.db: there is no such file"):
+            load_run(tmp_path)
+        (tmp_path / "run.db").write_text(
+            "this is no database, but it is long enough to be taken for one" * 10
+        )
+        with pytest.raises(InputError, match="file is not a database"):
+            load_run(tmp_path)
+
+    def test_another_format_is_refused(self, toy_config: Load, tmp_path: Path) -> None:
+        finished = run(toy_config(), out=tmp_path / "run")
+        with sqlite3.connect(finished.directory / "run.db") as database:
+            database.execute("UPDATE meta SET value = '99' WHERE key = 'format'")
+        with pytest.raises(InputError, match=r"has the format \['99'\], but this evoframe reads format 1"):
+            load_run(finished.directory)
+
+
+class TestObservers:
+    def test_are_told_of_a_turn_only_when_it_is_saved(
+        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+    ) -> None:
+        told: list[Any] = []
+        observer = types.ModuleType("observer")
+
+        def started(directory: Path) -> None:
+            told.append("started")
+
+        def turned(turn: Turn) -> None:
+            told.append((turn.index, len({row[0] for row in rows(tmp_path / "run", "turns")})))
+
+        def finished(completed: bool) -> None:
+            told.append(completed)
+
+        observer.evoframe_run_started = hookimpl(started)  # type: ignore[attr-defined]
+        observer.evoframe_turn_finished = hookimpl(turned)  # type: ignore[attr-defined]
+        observer.evoframe_run_finished = hookimpl(finished)  # type: ignore[attr-defined]
+        toy_plugins.add(observer, Source("watcher", "1.0", "watch"))
+        run(toy_config(), out=tmp_path / "run")
+        assert told == ["started", *[(index, index + 1) for index in range(9)], True]
+
+    def test_one_that_raises_changes_nothing(
+        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+    ) -> None:
+        undisturbed = run(toy_config(), out=tmp_path / "undisturbed")
+        observer = types.ModuleType("observer")
+
+        def turned(turn: Turn) -> None:
+            raise OSError("no disk")
+
+        observer.evoframe_turn_finished = hookimpl(turned)  # type: ignore[attr-defined]
+        toy_plugins.add(observer, Source("watcher", "1.0", "watch"))
+        with pytest.warns(PluginWarning, match="observer 'watcher:watch' is disabled: OSError: no disk"):
+            disturbed = run(toy_config(), out=tmp_path / "disturbed")
+        assert disturbed.pairs == undisturbed.pairs
+
+
+def test_a_run_that_is_stopped_keeps_all_turns_and_says_that_it_is_not_complete(
+    toy_config: Load, tmp_path: Path
+) -> None:
+    asked: list[None] = []
+
+    def stop() -> bool:
+        asked.append(None)
+        return len(asked) == 4
+
+    assert not execute(toy_config(), tmp_path / "run", stop=stop)
+    stopped = load_run(tmp_path / "run")
+    assert max(row["turn"] for row in stopped.turns) == 3
+    assert stopped.summary == {}
+
+
+def test_a_turn_and_its_state_are_saved_both_or_neither(
+    toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = toys.DriftRun.state
+    calls: list[None] = []
+
+    def unsaveable(self: toys.DriftRun) -> Any:
+        calls.append(None)
+        return state(self) if len(calls) < 5 else {"not": float("nan")}
+
+    monkeypatch.setattr(toys.DriftRun, "state", unsaveable)
+    with pytest.raises(ValueError, match="JSON compliant"):
+        run(toy_config(), out=tmp_path / "run")
+    saved = load_run(tmp_path / "run")
+    last = max(row["turn"] for row in saved.turns)
+    assert max(row["turn"] for row in saved.table("state")) == last
+    assert max(row["turn"] for row in saved.pairs) == last == 2
+
+
+class TestChampionFile:
+    @pytest.fixture
+    def champion(self, toy_config: Load, tmp_path: Path) -> Path:
+        return run(toy_config(), out=tmp_path / "run").directory / "champion.json"
+
+    def test_is_read_back_exactly(self, champion: Path) -> None:
+        design, simulation, displacement = read_champion(champion)
+        assert simulation == {
+            "simulator": {"name": "toy-product", "limit": 1e9},
+            "objective": {"name": "toy-value"},
+        }
+        assert design.roles["a"][0] * design.roles["b"][0] == displacement
+        again = design_from_json(design_to_json(design), "here")
+        assert all((again.roles[role] == array).all() for role, array in design.roles.items())
+
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            (lambda d: [d], "this JSON is no champion"),
+            (lambda d: {}, "this JSON is no champion"),
+            (lambda d: {**d, "format": 2}, "format 2, but this evoframe reads format 1"),
+            (lambda d: {**d, "displacement": "high"}, "displacement or simulation: not as evoframe"),
+            (lambda d: {**d, "design": []}, "design: not as evoframe writes it"),
+            (
+                lambda d: {**d, "design": {"a": {"dtype": "object", "shape": [1], "values": [1]}}},
+                "unknown dtype",
+            ),
+            (
+                lambda d: {**d, "design": {"a": {"dtype": "float64", "shape": [2], "values": [1]}}},
+                "cannot reshape",
+            ),
+            (
+                lambda d: {**d, "design": {"a": {"dtype": "uint8", "shape": [1], "values": [-5]}}},
+                "design: not as",
+            ),
+            (
+                lambda d: {**d, "design": {"a": {"dtype": "float64", "shape": [1], "values": ["x"]}}},
+                "design: not as",
+            ),
+        ],
+    )
+    def test_that_was_changed_is_refused_with_its_name(
+        self, champion: Path, change: Callable[[Any], Any], message: str
+    ) -> None:
+        champion.write_text(json.dumps(change(json.loads(champion.read_text()))))
+        with pytest.raises(InputError, match=rf"champion\.json: .*{message}"):
+            read_champion(champion)
+
+    @pytest.mark.parametrize("text", ["", "{", "nope", "[" * 100_000])
+    def test_that_is_no_json_is_refused(self, champion: Path, text: str) -> None:
+        champion.write_text(text)
+        with pytest.raises(InputError, match="not valid JSON"):
+            read_champion(champion)

@@ -1,0 +1,102 @@
+import math
+from typing import Any
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from evoframe import Design
+from evoframe.testing import EncoderContract
+from evoframe_encoders import CppnController
+
+BODIES = hnp.arrays(
+    np.uint8, hnp.array_shapes(min_dims=3, max_dims=3, max_side=5), elements=st.sampled_from([0, 1, 3])
+)
+SCALES = st.sampled_from([0.0, 0.1, 1.0, 1e50])
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def some_body() -> Design:
+    codes = np.random.default_rng(0).choice([0, 1, 3], size=(6, 4, 3)).astype(np.uint8)
+    return Design({"morphology": codes})
+
+
+class TestContract(EncoderContract):
+    component = CppnController()
+
+    def design(self) -> Design:
+        return some_body()
+
+
+class TestContractInNormalizedCoordinates(EncoderContract):
+    component = CppnController(normalized_coordinates=True)
+
+    def design(self) -> Design:
+        return some_body()
+
+
+def offsets_of(body: Any, network: Any, **options: Any) -> Any:
+    return CppnController(**options).decode(network, Design({"morphology": body})).roles["controller"]
+
+
+def test_the_declarations_are_the_papers() -> None:
+    encoder = CppnController()
+    assert (encoder.inputs, encoder.outputs) == (4, 1)
+    assert (encoder.requires, encoder.provides) == (("morphology",), ("controller",))
+
+
+@given(BODIES, st.booleans(), SEEDS, SCALES)
+def test_offsets_are_those_drawn_voxel_by_voxel(
+    network: Any, body: Any, normalized: bool, seed: int, scale: float
+) -> None:
+    drawing = network(4, 1, seed, scale)
+    expected = np.zeros(body.shape)
+    for index in zip(*np.nonzero(body == 3), strict=True):
+        point = [float(i) for i in index]
+        if normalized:
+            point = [
+                np.linspace(-1, 1, n)[i] if n > 1 else 0.0 for i, n in zip(index, body.shape, strict=True)
+            ]
+        offset = drawing(np.array([[*point, 3.0]]))[0, 0]
+        expected[index] = min(max(offset, -2 * math.pi), 2 * math.pi)
+    offsets = offsets_of(body, drawing, normalized_coordinates=normalized)
+    assert offsets.dtype == np.float64
+    assert not offsets.flags.writeable
+    assert offsets.tolist() == expected.tolist()
+
+
+@given(BODIES, SEEDS, SCALES)
+def test_offsets_are_within_2_pi_and_0_where_nothing_contracts(
+    network: Any, body: Any, seed: int, scale: float
+) -> None:
+    offsets = offsets_of(body, network(4, 1, seed, scale))
+    assert (np.abs(offsets) <= 2 * math.pi).all()
+    assert (offsets[body != 3] == 0.0).all()
+
+
+def test_the_same_network_draws_another_controller_on_another_body(network: Any) -> None:
+    drawing = network(4, 1, 0, 0.1)
+    one, other = np.full((3, 3, 3), 3, np.uint8), np.full((3, 3, 3), 3, np.uint8)
+    other[1] = 1
+    offsets = offsets_of(one, drawing)
+    assert (offsets[1] != 0).any()
+    assert (offsets_of(other, drawing)[1] == 0).all()
+
+
+def test_a_body_without_contractile_voxels_has_no_offsets(network: Any) -> None:
+    assert not offsets_of(np.ones((2, 2, 2), np.uint8), network(4, 1, 0, 1.0)).any()
+
+
+def test_the_network_sees_raw_coordinates_and_the_material_code() -> None:
+    body = np.zeros((4, 3, 2), np.uint8)
+    body[3, 2, 1] = body[0, 0, 1] = 3
+    body[1, 1, 1] = 1
+    asked = []
+
+    def network(points: Any) -> Any:
+        asked.append(points.tolist())
+        return np.zeros((len(points), 1))
+
+    offsets_of(body, network)
+    assert asked == [[[0.0, 0.0, 1.0, 3.0], [3.0, 2.0, 1.0, 3.0]]]

@@ -1,0 +1,137 @@
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evoframe import Design
+from evoframe.testing import EncoderContract
+from evoframe_encoders import CppnController, CppnMorphology, evoframe_encoders
+
+CANVASES = st.tuples(st.integers(1, 7), st.integers(1, 5), st.integers(1, 5))
+SCALES = st.sampled_from([0.0, 1e-3, 0.1, 1.0, 1e50])
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+class TestContract(EncoderContract):
+    component = CppnMorphology()
+
+
+class TestContractOfAnOpenCanvas(EncoderContract):
+    component = CppnMorphology(canvas=(5, 1, 3), enclosure=False, normalized_coordinates=True)
+
+
+def body_of(encoder: CppnMorphology, network: Any) -> Any:
+    return encoder.decode(network, Design()).roles["morphology"]
+
+
+def constant(presence: float, material: float) -> Any:
+    return lambda points: np.tile([presence, material], (len(points), 1))
+
+
+def one_by_one(encoder: CppnMorphology, network: Any) -> Any:
+    """Decode voxel by voxel, as the paper says it."""
+    body = np.zeros(encoder.canvas, dtype=np.uint8)
+    for index in np.ndindex(*encoder.canvas):
+        outermost = any(i in (0, n - 1) for i, n in zip(index, encoder.canvas, strict=True))
+        if encoder.enclosure and outermost:
+            body[index] = 1
+            continue
+        point = [float(i) for i in index]
+        if encoder.normalized_coordinates:
+            point = [
+                np.linspace(-1, 1, n)[i] if n > 1 else 0.0 for i, n in zip(index, encoder.canvas, strict=True)
+            ]
+        presence, material = network(np.array([point]))[0]
+        if abs(presence) >= encoder.threshold:
+            body[index] = 3 if abs(material) >= encoder.threshold else 1
+    return body
+
+
+def test_they_are_offered_by_name() -> None:
+    assert evoframe_encoders() == {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}
+
+
+def test_the_defaults_are_the_papers() -> None:
+    encoder = CppnMorphology()
+    assert encoder == CppnMorphology((20, 8, 8), enclosure=True, threshold=0.5, normalized_coordinates=False)
+    assert (encoder.inputs, encoder.outputs) == (3, 2)
+    assert (encoder.requires, encoder.provides) == ((), ("morphology",))
+
+
+ENCODERS = st.builds(
+    CppnMorphology, canvas=CANVASES, enclosure=st.booleans(), normalized_coordinates=st.booleans()
+)
+
+
+@given(ENCODERS, SEEDS, SCALES)
+def test_a_body_is_the_one_drawn_voxel_by_voxel(
+    network: Any, encoder: CppnMorphology, seed: int, scale: float
+) -> None:
+    drawing = network(3, 2, seed, scale)
+    assert body_of(encoder, drawing).tolist() == one_by_one(encoder, drawing).tolist()
+
+
+@given(CANVASES, SEEDS, SCALES)
+def test_a_body_has_the_canvas_the_codes_and_the_enclosure(
+    network: Any, canvas: Any, seed: int, scale: float
+) -> None:
+    body = body_of(CppnMorphology(canvas), network(3, 2, seed, scale))
+    assert body.shape == canvas
+    assert body.dtype == np.uint8
+    assert not body.flags.writeable
+    assert set(np.unique(body)) <= {0, 1, 3}
+    interior = np.zeros(canvas, dtype=bool)
+    interior[1:-1, 1:-1, 1:-1] = True
+    assert (body[~interior] == 1).all()
+
+
+@pytest.mark.parametrize(
+    ("presence", "material", "code"),
+    [
+        (0.5, 0.5, 3),
+        (-0.5, -0.5, 3),
+        (0.5, 0.49999, 1),
+        (0.49999, 9.0, 0),
+        (-1e50, 0.0, 1),
+        (0.0, 0.0, 0),
+    ],
+)
+def test_presence_comes_first_and_signs_do_not_matter(presence: float, material: float, code: int) -> None:
+    body = body_of(CppnMorphology(), constant(presence, material))
+    assert set(np.unique(body[1:-1, 1:-1, 1:-1])) == {code}
+
+
+def test_only_the_interior_is_asked_in_raw_coordinates() -> None:
+    asked = []
+
+    def network(points: Any) -> Any:
+        asked.append(points)
+        return np.zeros((len(points), 2))
+
+    body_of(CppnMorphology(), network)
+    (points,) = asked
+    assert points.shape == (18 * 6 * 6, 3)
+    assert (points.min(axis=0).tolist(), points.max(axis=0).tolist()) == ([1, 1, 1], [18, 6, 6])
+
+
+def test_other_roles_of_a_design_are_kept() -> None:
+    design = CppnMorphology().decode(constant(1, 1), Design({"colour": np.arange(3)}))
+    assert sorted(design.roles) == ["colour", "morphology"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"canvas": (0, 8, 8)}, "three whole numbers of at least 1"),
+        ({"canvas": (8, 8)}, "three whole numbers of at least 1"),
+        ({"canvas": [20, 8, 8]}, "three whole numbers of at least 1"),
+        ({"canvas": (2**12, 2**12, 2)}, "more than 16777216 voxels"),
+        ({"threshold": -0.1}, "threshold"),
+        ({"threshold": float("nan")}, "threshold"),
+    ],
+)
+def test_a_bad_option_is_named(options: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        CppnMorphology(**options)

@@ -1,0 +1,370 @@
+# ruff: noqa: S311 - the point is Python's global generator
+import copy
+import json
+import os
+import pickle
+import random
+import subprocess
+import sys
+from typing import Any
+
+import neat
+import numpy as np
+import pytest
+
+from evoframe.testing import EvolverContract
+from evoframe_evolvers import Neat, evoframe_evolvers
+from evoframe_evolvers.genomes import GenePool
+from evoframe_evolvers.neat_evolver import _selection
+
+
+class TestContract(EvolverContract):
+    component = Neat()
+
+
+class TestContractOfCrowdedSpecies(EvolverContract):
+    component = Neat(compatibility_threshold=1.0, max_stagnation=2, species_elitism=0)
+    turns = 9
+
+
+def start(seed: int = 0, size: int = 25, **options: Any) -> Any:
+    return Neat(**options).start(3, 2, size, np.random.default_rng(seed))
+
+
+def fitness_of(genomes: list[Any]) -> list[float]:
+    """A fitness that rewards structure, and depends on nothing but the genomes."""
+    return [
+        sum(gene.weight for gene in genome.connections.values()) + len(genome.nodes) for genome in genomes
+    ]
+
+
+def turn(run: Any) -> list[Any]:
+    genomes = run.ask()
+    run.tell(np.array(fitness_of(genomes)), {})
+    return [run.dump(genome) for genome in genomes]
+
+
+def test_it_is_offered_by_name() -> None:
+    assert evoframe_evolvers()["neat"] is Neat
+
+
+def test_genomes_begin_as_in_the_paper() -> None:
+    run = start()
+    activations = set()
+    for genome in map(run.dump, run.ask()):
+        assert [node["id"] for node in genome["nodes"]] == [0, 1]
+        links = [(link["from"], link["to"], link["enabled"]) for link in genome["connections"]]
+        assert links == [(i, o, True) for i in (-1, -2, -3) for o in (0, 1)]
+        assert {node["response"] for node in genome["nodes"]} == {1.0}
+        assert {node["aggregation"] for node in genome["nodes"]} == {"sum"}
+        activations |= {node["activation"] for node in genome["nodes"]}
+    assert len(activations) > 12
+
+
+def test_responses_stay_1_and_numbers_within_bounds() -> None:
+    run = start(weight=Neat().weight, node_add=0.9)
+    for _ in range(30):
+        for genome in turn(run):
+            assert {node["response"] for node in genome["nodes"]} == {1.0}
+            assert all(abs(link["weight"]) <= 30 for link in genome["connections"])
+            assert all(abs(node["bias"]) <= 30 for node in genome["nodes"])
+
+
+def neat_alone(seed: int, generations: int) -> list[Any]:
+    """Return the populations of neat-python's own loop, from the same random numbers."""
+    options = Neat()
+    pool = GenePool(options, _selection(options), 3, 2, np.random.default_rng(seed))
+    config = pool.config
+    config.pop_size = 25
+    config.genome_config.node_indexer = None  # as neat-python would choose it
+    history = []
+
+    def evaluate(genomes: list[Any], _: Any) -> None:
+        history.append([pool.dump(genome) for _, genome in genomes])
+        for (_, genome), fitness in zip(genomes, fitness_of([g for _, g in genomes]), strict=True):
+            genome.fitness = fitness
+
+    with pool.stream.swapped_in():
+        neat.Population(config).run(evaluate, generations)
+    return history
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_it_evolves_as_neat_pythons_own_loop(seed: int) -> None:
+    run = start(seed)
+    assert [turn(run) for _ in range(40)] == neat_alone(seed, 40)
+
+
+def test_asking_twice_is_refused() -> None:
+    run = start()
+    run.ask()
+    with pytest.raises(RuntimeError, match=r"ask\(\) again before tell\(\)"):
+        run.ask()
+
+
+def test_telling_without_asking_is_refused() -> None:
+    run = start(size=3)
+    with pytest.raises(RuntimeError, match=r"tell\(\) without ask\(\)"):
+        run.tell(np.zeros(3), {})
+    run.ask()
+    run.tell(np.zeros(3), {})
+    with pytest.raises(RuntimeError, match=r"tell\(\) without ask\(\)"):
+        run.tell(np.zeros(3), {})
+
+
+@pytest.mark.parametrize(
+    ("fitness", "message"),
+    [
+        ([1.0, 2.0], r"expected fitness of shape \(3,\), got \(2,\)"),
+        ([[1.0, 2.0, 3.0]], r"got \(1, 3\)"),
+        ([1.0, float("nan"), 2.0], "finite, got nan"),
+        ([1.0, float("-inf"), 2.0], "finite, got -inf"),
+    ],
+)
+def test_bad_fitness_is_refused_and_changes_nothing(fitness: Any, message: str) -> None:
+    run = start(size=3)
+    run.ask()
+    before = run.state()
+    with pytest.raises(ValueError, match=message):
+        run.tell(np.array(fitness), {})
+    assert run.state() == before
+
+
+def test_members_say_what_is_known() -> None:
+    run = start(node_add=0.9)
+    for _ in range(12):
+        told = turn(run)
+    fitness = {member.id: member.fitness for member in run.members()}
+    born = {genome["id"] for genome in told}
+    genomes = run.ask()
+    assert list(genomes) == list(run.genomes())
+    for member, genome in zip(run.members(), genomes, strict=True):
+        enabled = sum(link["enabled"] for link in run.dump(genome)["connections"])
+        assert member.id == genome.key
+        assert member.genome_size == len(genome.nodes) + enabled
+        assert member.fitness == fitness.get(member.id)
+        assert (member.age > 0) == (member.id in born)
+        assert genome.key in run._species.species[member.species].members
+    assert len({member.age for member in run.members()}) > 1
+
+
+def test_age_counts_the_turns_of_an_elite() -> None:
+    run = start()
+    for age in range(6):
+        genomes = run.ask()
+        oldest = run.members()[[genome.key for genome in genomes].index(1)]
+        assert oldest.age == age
+        run.tell(np.array([1.0 if genome.key == 1 else 0.0 for genome in genomes]), {})
+
+
+def test_fitness_at_the_end_of_the_floats_is_survived() -> None:
+    run = start(size=6)
+    for sign in (1, -1) * 10:
+        run.ask()
+        fitness = sign * np.array([1.7e308, -1.7e308, 5e-324, 0.0, -0.0, 1e300])
+        run.tell(fitness, {})
+        assert [member.fitness for member in run.members()] == fitness.tolist()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"compatibility_threshold": 1.0, "node_add": 0.8},
+        {"max_stagnation": 2, "species_elitism": 0},
+        {"compatibility_threshold": 0.0, "size": 7},
+        {"species_fitness": "median", "survival_threshold": 0.1},
+    ],
+)
+def test_a_run_saved_after_every_turn_is_the_uninterrupted_one(options: dict[str, Any]) -> None:
+    uninterrupted, saved = start(**options), start(**options)
+    for number in range(40):
+        state = saved.state()
+        text = json.dumps(state, allow_nan=False)
+        assert json.loads(text) == state
+        saved = start(seed=number + 1, **options)
+        saved.restore(json.loads(text))
+        assert saved.state() == state
+        assert turn(saved) == turn(uninterrupted)
+        assert saved.members() == uninterrupted.members()
+
+
+def test_a_run_saved_between_ask_and_tell_is_the_uninterrupted_one() -> None:
+    uninterrupted, saved = start(), start()
+    for _ in range(10):
+        expected = uninterrupted.ask()
+        asked = saved.ask()
+        state = json.loads(json.dumps(saved.state()))
+        saved = start(seed=99)
+        saved.restore(state)
+        assert [saved.dump(g) for g in saved.genomes()] == [saved.dump(g) for g in asked]
+        saved.tell(np.array(fitness_of(saved.genomes())), {})
+        uninterrupted.tell(np.array(fitness_of(expected)), {})
+    assert saved.state() == uninterrupted.state()
+
+
+SCRIPT = """
+import hashlib, json
+import numpy as np
+from evoframe_evolvers import Neat, RandomSearch
+for evolver in (Neat(node_add=0.8), RandomSearch(mutations=9)):
+    run = evolver.start(4, 1, 25, np.random.default_rng(3))
+    for turn in range(25):
+        genomes = run.ask()
+        outputs = [run.express(g)(np.arange(32.0).reshape(8, 4)).sum() for g in genomes]
+        run.tell(np.arctan(outputs), {})
+    print(hashlib.sha256(json.dumps(run.state()).encode()).hexdigest())
+"""
+
+
+def test_the_hash_seed_of_python_does_not_matter() -> None:
+    def outcome(hash_seed: str) -> str:
+        environment = {**os.environ, "PYTHONHASHSEED": hash_seed, "PYTHONPATH": os.pathsep.join(sys.path)}
+        done = subprocess.run(
+            [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True
+        )
+        return done.stdout
+
+    assert outcome("0") == outcome("1") == outcome("31337")
+
+
+def test_two_populations_interleaved_equal_each_alone_and_leave_the_global_random_alone() -> None:
+    alone = {seed: [turn(run) for run in [start(seed)] for _ in range(15)] for seed in (1, 2)}
+    random.seed(7)
+    expected = [random.random() for _ in range(30)]
+    random.seed(7)
+    runs, histories, drawn = {1: start(1), 2: start(2)}, {1: [], 2: []}, []
+    for _ in range(15):
+        for seed, run in runs.items():
+            histories[seed].append(turn(run))
+            drawn.append(random.random())
+    assert histories == alone
+    assert drawn == expected
+
+
+def test_starting_takes_one_draw_of_the_generator_and_never_another() -> None:
+    rng, drawn = np.random.default_rng(0), np.random.default_rng(0)
+    run = Neat().start(3, 2, 25, rng)
+    drawn.bytes(32)
+    assert rng.bit_generator.state == drawn.bit_generator.state
+    turn(run)
+    turn(run)
+    assert rng.bit_generator.state == drawn.bit_generator.state
+
+
+@pytest.mark.parametrize("duplicate", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_a_population_cannot_be_copied_behind_its_back(duplicate: Any) -> None:
+    run = start(size=3)
+    with pytest.raises(TypeError, match=r"use state\(\) and restore\(\)"):
+        duplicate(run._pool)
+
+
+def test_nothing_grows_for_ever() -> None:
+    run = start()
+    for _ in range(30):
+        turn(run)
+    assert not run._reproduction.ancestors
+    assert len(run._cohort.born) == len(run._cohort.fitness) == 25
+
+
+def delete(*path: Any) -> Any:
+    return lambda state: _walk(state, path[:-1]).pop(path[-1])
+
+
+def put(value: Any, *path: Any) -> Any:
+    def change(state: Any) -> None:
+        _walk(state, path[:-1])[path[-1]] = value
+
+    return change
+
+
+def _walk(state: Any, path: tuple[Any, ...]) -> Any:
+    for part in path:
+        state = state[part]
+    return state
+
+
+MEMBER = ("cohort", "members", 0)
+NODE = (*MEMBER, "genome", "nodes", 0)
+LINK = (*MEMBER, "genome", "connections", 0)
+
+DAMAGE = [
+    *[delete(key) for key in ("evolver", "pool", "cohort", "species", "next_species")],
+    *[delete("pool", key) for key in ("next_genome", "next_node", "innovation", "innovations", "random")],
+    *[delete("cohort", key) for key in ("generation", "phase", "members")],
+    *[delete(*MEMBER, key) for key in ("born", "fitness", "genome")],
+    *[delete(*NODE, key) for key in ("id", "bias", "response", "activation", "aggregation", "time_constant")],
+    *[delete(*LINK, key) for key in ("from", "to", "innovation", "weight", "enabled")],
+    *[
+        delete("species", 0, key)
+        for key in (
+            "id",
+            "created",
+            "last_improved",
+            "representative",
+            "members",
+            "fitness",
+            "adjusted_fitness",
+            "fitness_history",
+        )
+    ],
+    delete("cohort", "members", 0),
+    delete("species", 0, "members", 0),
+    put("random", "evolver"),
+    put(1, "pool", "next_genome"),
+    put(0, "pool", "next_node"),
+    put(1.5, "pool", "innovation"),
+    put([[1, 2]], "pool", "innovations"),
+    put([[1, 2, 3, 4]], "pool", "innovations"),
+    put([[[], 2, "add", 4]], "pool", "innovations"),
+    put([3, [], None], "pool", "random"),
+    put("lost", "cohort", "phase"),
+    put(-1, "cohort", "generation"),
+    put(1000, *MEMBER, "born"),
+    put(float("nan"), *MEMBER, "fitness"),
+    put(None, *MEMBER, "fitness"),
+    put(10**6, *MEMBER, "genome", "id"),
+    put(None, *MEMBER, "genome", "id"),
+    put("sine", *NODE, "activation"),
+    put("max", *NODE, "aggregation"),
+    put(float("inf"), *NODE, "bias"),
+    put("1", *NODE, "bias"),
+    put(1, *NODE, "id"),
+    put(77, *LINK, "to"),
+    put(1, *LINK, "enabled"),
+    put(0, "species", 0, "id"),
+    put(10**6, "species", 0, "id"),
+    put(10**6, "species", 0, "representative"),
+    put([], "species"),
+    put([None], "species"),
+    put(["x"], "species", 0, "fitness_history"),
+    put(None, "species", 0, "members"),
+    put([[]], "species", 0, "members"),
+]
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_state_is_refused_and_changes_nothing(damage: Any) -> None:
+    run, other = start(), start(seed=1)
+    for _ in range(3):
+        turn(run)
+        turn(other)
+    damaged = run.state()
+    damage(damaged)
+    before = other.state()
+    with pytest.raises(ValueError, match=r"."):
+        other.restore(damaged)
+    assert other.state() == before
+
+
+@pytest.mark.parametrize("state", [None, 3, "x", [], {}])
+def test_what_is_no_state_is_refused(state: Any) -> None:
+    with pytest.raises(ValueError, match="the state has no 'evolver'"):
+        start().restore(state)
+
+
+@pytest.mark.parametrize("other", [(4, 2, 25), (3, 1, 25), (3, 3, 25), (3, 2, 24)])
+def test_the_state_of_another_population_is_refused(other: tuple[int, int, int]) -> None:
+    state = start().state()
+    with pytest.raises(ValueError, match=r"."):
+        Neat().start(*other, np.random.default_rng(0)).restore(state)

@@ -1,0 +1,444 @@
+import copy
+import itertools
+import math
+import random
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from evoframe import ConfigurationError, Member, Network
+from evoframe.testing import EvolverContract
+
+SIZES = "test_sizes_are_refused_by_a_configuration_error"
+KEEPS_SIZE = "test_the_population_keeps_its_size"
+UNIQUE = "test_ids_are_unique"
+ONE_GENOME = "test_an_id_stands_for_one_genome"
+GENOMES = "test_genomes_are_those_of_the_last_ask"
+MEMBERS = "test_members_have_the_fitness_that_was_told_in_order"
+NUMBER = "test_a_wrong_number_of_values_is_refused"
+NOT_FINITE = "test_fitness_that_is_not_finite_is_refused"
+SAME_SEED = "test_the_same_seed_gives_the_same_evolution"
+OTHER_SEED = "test_another_seed_gives_another_evolution"
+RESTORED = "test_a_restored_run_continues_bit_for_bit"
+LOOKING = "test_looking_changes_nothing"
+INTERLEAVED = "test_interleaved_runs_equal_each_alone"
+GLOBAL = "test_global_random_states_are_left_alone"
+INDEPENDENT = "test_global_random_states_do_not_matter"
+OUTPUTS = "test_networks_give_finite_outputs"
+FUNCTIONS = "test_networks_are_functions"
+JSON = "test_a_dumped_genome_is_json"
+
+Genome = dict[str, Any]
+
+
+class Climbing:
+    """A sound run, in which the better half has mutated children, and the base of those that are not."""
+
+    def __init__(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> None:
+        self.shape = (inputs, outputs)
+        self.size = size
+        self.rng = rng
+        self.population: list[Genome] = []
+        self.fitness: list[float] | None = None
+        self.next_id = 0
+
+    def ask(self) -> Sequence[Any]:
+        if not self.population:
+            self.population = [self.born(np.zeros(self.shape)) for _ in range(self.size)]
+        elif self.fitness is not None:
+            fitness = self.fitness
+            ranked = sorted(range(self.size), key=lambda i: -fitness[i])
+            elite = [self.population[i] for i in ranked[: self.size // 2]]
+            self.population = self.next_generation(elite)
+            self.fitness = None
+        return self.population
+
+    def next_generation(self, elite: list[Genome]) -> list[Genome]:
+        parents = itertools.islice(itertools.cycle(elite), self.size - len(elite))
+        return elite + [self.born(np.array(parent["weights"])) for parent in parents]
+
+    def born(self, weights: NDArray[np.float64]) -> Genome:
+        return {"id": self.new_id(), "weights": (weights + self.noise()).tolist()}
+
+    def new_id(self) -> int:
+        self.next_id += 1
+        return self.next_id
+
+    def noise(self) -> NDArray[np.float64]:
+        return self.rng.normal(size=self.shape)
+
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        if fitness.shape != (self.size,) or not np.isfinite(fitness).all():
+            raise ValueError(f"expected {self.size} finite values")
+        self.fitness = fitness.tolist()
+
+    def members(self) -> Sequence[Member]:
+        fitness = self.fitness or [None] * len(self.population)
+        return [Member(genome["id"], f) for genome, f in zip(self.population, fitness, strict=True)]
+
+    def genomes(self) -> Sequence[Any]:
+        return self.population
+
+    def express(self, genome: Genome) -> Network:
+        weights = np.array(genome["weights"])
+        return lambda points: np.tanh(points @ weights)
+
+    def dump(self, genome: Genome) -> Any:
+        return copy.deepcopy(genome)
+
+    def state(self) -> Any:
+        state = {name: getattr(self, name) for name in ("population", "fitness", "next_id")}
+        return copy.deepcopy(state | {"rng": self.rng.bit_generator.state})
+
+    def restore(self, state: Any) -> None:
+        for name in ("population", "fitness", "next_id"):
+            setattr(self, name, state[name])
+        self.rng.bit_generator.state = state["rng"]
+
+
+@attrs.frozen
+class Climber:
+    """A sound evolver, and the base of those that are not."""
+
+    run: ClassVar[type[Any]] = Climbing
+
+    def check(self, size: int) -> None:
+        if size < 2:
+            raise ConfigurationError(f"a population of {size} cannot climb")
+
+    def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> Any:
+        return self.run(inputs, outputs, size, rng)
+
+
+class TestClimber(EvolverContract):
+    component = Climber()
+
+
+class TestClimberOfOtherShape(EvolverContract):
+    component = Climber()
+    inputs = 4
+    outputs = 1
+    size = 5
+    turns = 3
+    measures = ("volume",)
+
+
+class PythonsRandom(Climbing):
+    def noise(self) -> NDArray[np.float64]:
+        return np.array([[random.gauss(0, 1) for _ in range(self.shape[1])] for _ in range(self.shape[0])])
+
+
+class NumpysRandom(Climbing):
+    def noise(self) -> NDArray[np.float64]:
+        return np.random.normal(size=self.shape)  # noqa: NPY002
+
+
+class ReadsPythonsState(Climbing):
+    """Draws nothing, but depends on what others have drawn."""
+
+    def noise(self) -> NDArray[np.float64]:
+        return super().noise() + random.getstate()[1][1] % 1000
+
+
+class SeedsOnRestore(Climbing):
+    def restore(self, state: Any) -> None:
+        random.seed(state["next_id"])
+        super().restore(state)
+
+
+class FreshRandom(Climbing):
+    def noise(self) -> NDArray[np.float64]:
+        return np.random.default_rng().normal(size=self.shape)
+
+
+class FixedRandom(Climbing):
+    def __init__(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> None:
+        super().__init__(inputs, outputs, size, np.random.default_rng(1))
+
+
+class Grows(Climbing):
+    def next_generation(self, elite: list[Genome]) -> list[Genome]:
+        self.size += 1
+        return super().next_generation(elite)
+
+
+class SameId(Climbing):
+    def new_id(self) -> int:
+        return 1
+
+
+class IdsByPosition(Climbing):
+    def next_generation(self, elite: list[Genome]) -> list[Genome]:
+        genomes = super().next_generation(elite)
+        return [{**genome, "id": i + 1} for i, genome in enumerate(genomes)]
+
+    def dump(self, genome: Genome) -> Any:
+        return genome["weights"]
+
+
+class MembersByFitness(Climbing):
+    def members(self) -> Sequence[Member]:
+        return sorted(super().members(), key=lambda member: -(member.fitness or 0.0))
+
+
+class GenomesByFitness(Climbing):
+    def genomes(self) -> Sequence[Any]:
+        fitness = self.fitness
+        if fitness is None:
+            return self.population
+        return [self.population[i] for i in sorted(range(self.size), key=lambda i: -fitness[i])]
+
+
+class GenomesOnlyOnce(Climbing):
+    """Forgets over a restart which genomes it has asked about."""
+
+    asked: Sequence[Any] = ()
+
+    def ask(self) -> Sequence[Any]:
+        self.asked = super().ask()
+        return self.asked
+
+    def genomes(self) -> Sequence[Any]:
+        return self.asked
+
+
+class FitnessFromTheStart(Climbing):
+    def members(self) -> Sequence[Member]:
+        return [attrs.evolve(member, fitness=member.fitness or 0.0) for member in super().members()]
+
+
+class AcceptsAnyNumber(Climbing):
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        super().tell(np.resize(fitness, self.size), measures)
+
+
+class AcceptsNaN(Climbing):
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        super().tell(np.where(np.isnan(fitness), 0.0, fitness), measures)
+
+
+class AcceptsInfinity(Climbing):
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        super().tell(np.where(np.isinf(fitness), 0.0, fitness), measures)
+
+
+class RefusesAfterTheFact(Climbing):
+    """Draws a number before it looks, so that a refusal shows in the next generation."""
+
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        if not np.isfinite(fitness).all():
+            self.rng.normal()
+        super().tell(fitness, measures)
+
+
+class ForgetsItsRandomStream(Climbing):
+    def restore(self, state: Any) -> None:
+        super().restore({**state, "rng": self.rng.bit_generator.state})
+
+
+class ForgetsItsCounter(Climbing):
+    def restore(self, state: Any) -> None:
+        super().restore({**state, "next_id": len(state["population"])})
+
+
+class ForgetsFitness(Climbing):
+    def restore(self, state: Any) -> None:
+        super().restore({**state, "fitness": None})
+
+
+class RoundsItsState(Climbing):
+    def state(self) -> Any:
+        state = super().state()
+        for genome in state["population"]:
+            genome["weights"] = np.round(genome["weights"], 12).tolist()
+        return state
+
+
+class StateAdvances(Climbing):
+    """Like the pickling of a configuration of neat-python 2.0."""
+
+    def state(self) -> Any:
+        self.next_id += 1
+        return super().state()
+
+
+class ExpressDraws(Climbing):
+    def express(self, genome: Genome) -> Network:
+        self.rng.normal()
+        return super().express(genome)
+
+
+class DumpChanges(Climbing):
+    def dump(self, genome: Genome) -> Any:
+        genome["dumped"] = genome.get("dumped", 0) + 1
+        return super().dump(genome)
+
+
+class SharedCounter(Climbing):
+    ids: ClassVar[Any] = itertools.count(1)
+
+    def new_id(self) -> int:
+        return int(next(self.ids))
+
+
+class DisturbsTheOther(Climbing):
+    """Depends on which run was the last to start: each alone is the last."""
+
+    last: ClassVar[list[Any]] = [None]
+
+    def __init__(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> None:
+        super().__init__(inputs, outputs, size, rng)
+        self.last[0] = self
+
+    def noise(self) -> NDArray[np.float64]:
+        return super().noise() + (self.last[0] is not self)
+
+
+class Unbounded(Climbing):
+    def express(self, genome: Genome) -> Network:
+        def network(points: NDArray[np.float64]) -> NDArray[np.float64]:
+            with np.errstate(over="ignore"):
+                return np.exp(points @ np.array(genome["weights"]))
+
+        return network
+
+
+class Flat(Climbing):
+    def express(self, genome: Genome) -> Network:
+        network = super().express(genome)
+        return lambda points: network(points)[:, 0]
+
+
+class SinglePrecision(Climbing):
+    def express(self, genome: Genome) -> Network:
+        network = super().express(genome)
+        return lambda points: network(points).astype(np.float32)  # type: ignore[return-value]
+
+
+class Recurrent(Climbing):
+    def express(self, genome: Genome) -> Network:
+        network = super().express(genome)
+        calls = itertools.count()
+        return lambda points: network(points + next(calls))
+
+
+class CentresPoints(Climbing):
+    def express(self, genome: Genome) -> Network:
+        network = super().express(genome)
+
+        def centred(points: NDArray[np.float64]) -> NDArray[np.float64]:
+            points -= points.mean() + 1
+            return network(points)
+
+        return centred
+
+
+class DumpsTuples(Climbing):
+    def dump(self, genome: Genome) -> Any:
+        return tuple(genome["weights"])
+
+
+class DumpsNaN(Climbing):
+    def dump(self, genome: Genome) -> Any:
+        return math.nan
+
+
+class DumpsArrays(Climbing):
+    def dump(self, genome: Genome) -> Any:
+        return np.array(genome["weights"])
+
+
+class StateOfArrays(Climbing):
+    def state(self) -> Any:
+        return {**super().state(), "fitness": np.array(self.fitness)}
+
+
+class NoDump:
+    ask = Climbing.ask
+    tell = Climbing.tell
+
+
+def evolver(run: type[Any]) -> Any:
+    return type(run.__name__, (Climber,), {"run": run})()
+
+
+@pytest.mark.parametrize(
+    ("run", "law"),
+    [
+        (Grows, KEEPS_SIZE),
+        (SameId, UNIQUE),
+        (IdsByPosition, ONE_GENOME),
+        (GenomesByFitness, GENOMES),
+        (GenomesOnlyOnce, RESTORED),
+        (MembersByFitness, MEMBERS),
+        (FitnessFromTheStart, MEMBERS),
+        (AcceptsAnyNumber, NUMBER),
+        (AcceptsNaN, NOT_FINITE),
+        (AcceptsInfinity, NOT_FINITE),
+        (RefusesAfterTheFact, NOT_FINITE),
+        (PythonsRandom, GLOBAL),
+        (PythonsRandom, INDEPENDENT),
+        (PythonsRandom, SAME_SEED),
+        (NumpysRandom, GLOBAL),
+        (NumpysRandom, INDEPENDENT),
+        (ReadsPythonsState, INDEPENDENT),
+        (SeedsOnRestore, GLOBAL),
+        (FreshRandom, SAME_SEED),
+        (FixedRandom, OTHER_SEED),
+        (ForgetsItsRandomStream, RESTORED),
+        (ForgetsItsCounter, RESTORED),
+        (ForgetsFitness, RESTORED),
+        (RoundsItsState, RESTORED),
+        (StateAdvances, LOOKING),
+        (StateAdvances, RESTORED),
+        (ExpressDraws, LOOKING),
+        (DumpChanges, LOOKING),
+        (SharedCounter, INTERLEAVED),
+        (DisturbsTheOther, INTERLEAVED),
+        (Unbounded, OUTPUTS),
+        (Flat, OUTPUTS),
+        (SinglePrecision, OUTPUTS),
+        (Recurrent, FUNCTIONS),
+        (CentresPoints, FUNCTIONS),
+        (DumpsTuples, JSON),
+    ],
+)
+def test_a_broken_run_is_caught(run: type[Any], law: str, breaks: Callable[..., None]) -> None:
+    breaks(EvolverContract, evolver(run), law)
+
+
+@pytest.mark.parametrize(
+    ("run", "law", "error"),
+    [
+        (DumpsNaN, JSON, ValueError),
+        (DumpsArrays, JSON, TypeError),
+        (StateOfArrays, RESTORED, TypeError),
+        (NoDump, "test_it_starts_a_run", TypeError),
+    ],
+)
+def test_what_is_no_json_is_caught(
+    run: type[Any], law: str, error: type[Exception], breaks: Callable[..., None]
+) -> None:
+    breaks(EvolverContract, evolver(run), law, error=error)
+
+
+class RefusesWithAnotherError(Climber):
+    def check(self, size: int) -> None:
+        if size < 2:
+            raise ValueError(size)
+
+
+class RefusesWithoutAWord(Climber):
+    def check(self, size: int) -> None:
+        if size < 2:
+            raise ConfigurationError
+
+
+def test_refusals_that_are_none_are_caught(breaks: Callable[..., None]) -> None:
+    breaks(EvolverContract, RefusesWithAnotherError(), SIZES, error=ValueError)
+    breaks(EvolverContract, RefusesWithoutAWord(), SIZES)
+    breaks(EvolverContract, Climber(), SIZES, size=1)

@@ -1,0 +1,291 @@
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
+
+import attrs
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from evoframe import ConfigurationError, Design, Outcome, Record
+from evoframe.testing import SimulatorContract
+
+ACCEPTED = "test_a_record_of_its_tracks_is_accepted"
+TRACK = "test_an_unknown_track_is_refused"
+END = "test_a_sample_after_the_end_is_refused"
+EACH = "test_each_design_has_an_outcome"
+ARRAYS = "test_outcomes_have_the_promised_arrays"
+TIME = "test_time_goes_on"
+FINITE = "test_positions_are_finite_unless_the_simulation_diverged"
+DIVERGENCE = "test_divergence_is_said"
+REPEATED = "test_a_simulation_can_be_repeated"
+BATCH = "test_a_batch_equals_its_members_one_by_one"
+THREADS = "test_any_number_of_threads_may_call_at_once"
+TRACKS = "test_recording_more_tracks_changes_nothing"
+SAMPLES = "test_recording_more_samples_changes_nothing"
+INITIAL = "test_the_initial_state_is_one_more_row"
+OFTEN = "test_sampling_more_often_changes_nothing"
+KEYS = "test_keys_are_bytes_and_equal_for_equal_designs"
+EQUAL_KEYS = "test_equal_keys_mean_equal_outcomes"
+
+STEPS, STEP = 12, 0.01
+
+
+@attrs.frozen
+class Spring:
+    """A sound simulator of a weight on a spring, and the base of those that are not.
+
+    The role ``spring`` is stiffness and damping; a third number is its colour, which does not matter. Without
+    stiffness there is nothing to simulate.
+    """
+
+    requires: ClassVar[tuple[str, ...]] = ("spring",)
+    tracks: ClassVar[tuple[str, ...]] = ("weight", "middle")
+
+    def check(self, record: Record) -> None:
+        for track in record.tracks:
+            if track not in self.tracks:
+                raise ConfigurationError(f"there is no track '{track}'")
+        if record.samples and max(record.samples) >= len(self.sampled(record)):
+            raise ConfigurationError(f"there are only {len(self.sampled(record))} samples")
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        return [self.one(design, record) for design in designs]
+
+    def key(self, design: Design, record: Record) -> Any:
+        return design.roles["spring"][:2].tobytes() + repr(record).encode()
+
+    def one(self, design: Design, record: Record) -> Outcome:
+        positions, diverged_at = self.positions(design)
+        steps = self.kept(record)[: 0 if diverged_at == 0 else None]
+        tracks = {"weight": positions[steps], "middle": positions[steps] / 2}
+        recorded = {name: tracks[name] for name in record.tracks}
+        return Outcome(steps, steps * STEP, recorded, diverged_at)
+
+    def positions(self, design: Design) -> tuple[NDArray[np.float64], int | None]:
+        stiffness, damping = design.roles["spring"][:2]
+        positions, speed = np.zeros((STEPS + 1, 3)), 1.0
+        if stiffness == 0:
+            return positions, 0
+        for step in range(1, STEPS + 1):
+            speed -= STEP * (stiffness * positions[step - 1, 2] + damping * speed)
+            positions[step] = positions[step - 1] + (0, 0, STEP * speed)
+            if abs(positions[step, 2]) > 10:
+                positions[step:] = np.nan
+                return positions, step
+        return positions, None
+
+    def sampled(self, record: Record) -> NDArray[np.int64]:
+        """Return the steps of all samples."""
+        steps = [1]
+        for step in range(2, STEPS + 1):
+            if (step - steps[-1]) * STEP >= record.every - 1e-12:
+                steps.append(step)
+        return np.array(steps, dtype=np.int64)
+
+    def kept(self, record: Record) -> NDArray[np.int64]:
+        steps = self.sampled(record)
+        steps = steps if record.samples is None else steps[list(record.samples)]
+        return np.append(0, steps) if record.initial else steps
+
+
+def spring(stiffness: float, damping: float, colour: float = 0.0) -> Design:
+    return Design({"spring": np.array([stiffness, damping, colour])})
+
+
+class SpringContract(SimulatorContract):
+    def designs(self) -> Sequence[Design]:
+        return [spring(1.0, 0.0), spring(1.0, 0.0, colour=1.0), spring(50.0, 0.5), spring(1.0, 0.1)]
+
+    def diverging(self) -> Sequence[Design]:
+        return [spring(1e6, -1.0), spring(0.0, 0.0)]
+
+
+class TestSpring(SpringContract):
+    component = Spring()
+
+
+class TestSpringWithinASelection(SpringContract):
+    component = Spring()
+
+    def record(self) -> Record:
+        return Record(("weight",), every=0.02, samples=(1, 2, 4), initial=True)
+
+
+class AcceptsAnyTrack(Spring):
+    def check(self, record: Record) -> None:
+        pass
+
+
+class RefusesEverything(Spring):
+    def check(self, record: Record) -> None:
+        raise ConfigurationError("no")
+
+
+class ForgetsTheLast(Spring):
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        return super().simulate(designs[:-1], record)
+
+
+class NoEmptyBatch(Spring):
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        return super().simulate(designs or [spring(1.0, 0.0)], record)
+
+
+class AddsOutcomes(Spring):
+    """Outcomes depend on the batch."""
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        outcomes = super().simulate(designs, record)
+        return [changed(outcome, lambda track: track + len(designs)) for outcome in outcomes]
+
+
+class StopsAtADivergence(Spring):
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        outcomes = super().simulate(designs, record)
+        return [outcome if i == 0 else attrs.evolve(outcomes[0]) for i, outcome in enumerate(outcomes)]
+
+
+class SharedBuffer(Spring):
+    buffer: ClassVar[NDArray[np.float64]] = np.zeros((STEPS + 1, 3))
+
+    def positions(self, design: Design) -> tuple[NDArray[np.float64], int | None]:
+        positions, diverged_at = super().positions(design)
+        self.buffer[:] = positions
+        time.sleep(0.01)
+        return self.buffer.copy(), diverged_at
+
+
+class Noisy(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        noise = np.random.default_rng().normal()
+        return changed(super().one(design, record), lambda track: track + noise)
+
+
+class DisturbedByTracks(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track + len(record.tracks))
+
+
+class DisturbedBySamples(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track + len(record.samples or ()))
+
+
+class DisturbedByRate(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track + record.every)
+
+
+class IgnoresInitial(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return super().one(design, attrs.evolve(record, initial=False))
+
+
+class HidesDivergence(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return attrs.evolve(super().one(design, record), diverged_at=None)
+
+
+class HidesNaN(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), np.nan_to_num)
+
+
+class SinglePrecision(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track.astype(np.float32))
+
+
+class AllTracksAlways(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return super().one(design, attrs.evolve(record, tracks=self.tracks))
+
+
+class LosesASample(Spring):
+    def kept(self, record: Record) -> NDArray[np.int64]:
+        return super().kept(record)[1:]
+
+
+class OnlyHeights(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track[:, 2:])
+
+
+class StandsStill(Spring):
+    def one(self, design: Design, record: Record) -> Outcome:
+        outcome = super().one(design, record)
+        return attrs.evolve(outcome, times=outcome.times * 0)
+
+
+class KeyOfText(Spring):
+    def key(self, design: Design, record: Record) -> Any:
+        return super().key(design, record).hex()
+
+
+class KeyOfIdentity(Spring):
+    def key(self, design: Design, record: Record) -> Any:
+        return id(design.roles["spring"]).to_bytes(8, "big") + repr(record).encode()
+
+
+class KeyWithoutDamping(Spring):
+    def key(self, design: Design, record: Record) -> Any:
+        return design.roles["spring"][:1].tobytes() + repr(record).encode()
+
+
+class KeyWithoutRecord(Spring):
+    def key(self, design: Design, record: Record) -> Any:
+        return design.roles["spring"].tobytes()
+
+
+def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> Outcome:
+    return attrs.evolve(outcome, tracks={name: change(track) for name, track in outcome.tracks.items()})
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (AcceptsAnyTrack(), TRACK),
+        (AcceptsAnyTrack(), END),
+        (ForgetsTheLast(), EACH),
+        (NoEmptyBatch(), EACH),
+        (AddsOutcomes(), BATCH),
+        (StopsAtADivergence(), BATCH),
+        (SharedBuffer(), THREADS),
+        (Noisy(), REPEATED),
+        (DisturbedByTracks(), TRACKS),
+        (DisturbedBySamples(), SAMPLES),
+        (DisturbedByRate(), OFTEN),
+        (IgnoresInitial(), INITIAL),
+        (HidesDivergence(), FINITE),
+        (HidesDivergence(), DIVERGENCE),
+        (HidesNaN(), DIVERGENCE),
+        (SinglePrecision(), ARRAYS),
+        (OnlyHeights(), ARRAYS),
+        (AllTracksAlways(), TRACKS),
+        (StandsStill(), TIME),
+        (KeyOfText(), KEYS),
+        (KeyOfIdentity(), KEYS),
+        (KeyWithoutDamping(), EQUAL_KEYS),
+        (KeyWithoutRecord(), EQUAL_KEYS),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, Spring) else value,
+)
+def test_a_broken_simulator_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(SpringContract, component, law)
+
+
+def test_a_lost_sample_is_caught(breaks: Callable[..., None]) -> None:
+    record = Record(("weight",), samples=(1, 4))
+    breaks(SpringContract, LosesASample(), ARRAYS, record=lambda _: record)
+
+
+def test_a_record_that_is_refused_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(SpringContract, RefusesEverything(), ACCEPTED, error=ConfigurationError)
+
+
+def test_too_few_examples_are_caught(breaks: Callable[..., None]) -> None:
+    law = "test_there_are_three_examples_with_the_required_roles"
+    breaks(SpringContract, Spring(), law, designs=lambda _: [spring(1.0, 0.0)])
+    breaks(SpringContract, Spring(), law, designs=lambda _: [Design()] * 3)
+    breaks(SimulatorContract, Spring(), law, error=NotImplementedError)

@@ -1,0 +1,25 @@
+"""A whole third-party plugin: one component, one hook."""
+
+import statistics
+
+import attrs
+
+from evoframe import hookimpl
+
+
+@attrs.frozen
+class Median:
+    """Median of the scores."""
+
+    domain = (-1e100, 1e100)
+
+    def check(self, n):
+        pass
+
+    def aggregate(self, scores):
+        return float(statistics.median(scores.tolist()))
+
+
+@hookimpl
+def evoframe_aggregators():
+    return {"median": Median}
