@@ -26,10 +26,11 @@ cp "$root"/libvox/evoframe_libvox/*.py "$place/evoframe_libvox/"
 
 # The interpreter was built without the sanitizer, so its runtime has to be there first.
 export LD_PRELOAD=$("$compiler" -print-file-name=libasan.so)
-export ASAN_OPTIONS=detect_leaks=0
+export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 export PYTHONMALLOC=malloc # so that the sanitizer sees NumPy's and cffi's buffers
 export PYTHONPATH=$place PYTHONDONTWRITEBYTECODE=1
 cd "$root"
 found=$("$python" -c 'import evoframe_libvox; print(evoframe_libvox.__file__)')
 [[ $found == "$place"/* ]] || { echo "expected the sanitized build in $place, found $found" >&2; exit 1; }
-"$python" -m pytest -p no:cacheprovider tests/libvox "$@"
+# Only what Python prints is captured: a sanitizer's report goes straight to the terminal.
+"$python" -m pytest --capture=sys -p no:cacheprovider tests/libvox "$@"

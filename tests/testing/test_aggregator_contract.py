@@ -1,3 +1,4 @@
+import math
 import statistics
 from collections.abc import Callable
 from types import MappingProxyType
@@ -63,8 +64,7 @@ class UnsortedMean(Median):
 
 class Product(Median):
     def aggregate(self, scores: Scores) -> float:
-        with np.errstate(over="ignore"):
-            return float(np.prod(np.sort(scores)))
+        return math.prod(sorted(scores.tolist()))
 
 
 class SortsInPlace(Median):

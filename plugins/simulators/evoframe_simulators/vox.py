@@ -122,8 +122,8 @@ class Vox:
     def read(self, path: Path) -> list[tuple[str, Design]]:
         """Return the bodies of an ``.npz`` file with their labels.
 
-        The file has ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``; codes 0, 1, 3) and ``phase_cycles`` of the
-        same shape.
+        The file has ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``; codes 0, 1, 3) and ``phase_cycles`` of
+        the same shape.
 
         Raises:
             InputError: The file cannot be read, or is something else.

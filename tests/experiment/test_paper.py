@@ -1,0 +1,183 @@
+"""The published experiment with its real components, shortened; the whole of it is `make run`."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sqlite3
+import statistics
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import evoframe
+from evoframe import Run
+
+TABLES = ("turns", "individuals", "pairs", "champions", "state", "meta")
+WEIGHTS = {2: (0.6, 0.4), 3: (0.5, 0.3, 0.2), 5: (0.4, 0.3, 0.15, 0.1, 0.05)}
+
+
+def rows(directory: Path, table: str) -> list[tuple[Any, ...]]:
+    with sqlite3.connect(directory / "run.db") as database:
+        return database.execute(f"SELECT * FROM {table}").fetchall()  # noqa: S608
+
+
+def assert_same_result(first: Path, second: Path) -> None:
+    for table in TABLES:
+        assert rows(first, table) == rows(second, table), table
+    assert (first / "champion.json").read_bytes() == (second / "champion.json").read_bytes()
+
+
+def weighted(scores: list[float]) -> float:
+    ordered = sorted(scores, reverse=True)
+    return math.fsum(w * s for w, s in zip(WEIGHTS[len(scores)], ordered, strict=True))
+
+
+def floored(mean: Callable[[list[float]], float]) -> Callable[[list[float]], float]:
+    return lambda scores: mean([1e-5 if score <= 0 else score for score in scores])
+
+
+MEANS: dict[str, Callable[[list[float]], float]] = {
+    "am": statistics.fmean,
+    "wm": weighted,
+    "gm": floored(statistics.geometric_mean),
+    "hm": floored(statistics.harmonic_mean),
+}
+
+
+@pytest.fixture(scope="module")
+def short(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Three generations of the paper's run, with its full populations."""
+    return evoframe.run("paper", out=tmp_path_factory.mktemp("short") / "run", **{"run.generations": 3})
+
+
+class TestRecord:
+    def test_the_initial_meeting_has_625_pairs_and_each_turn_50(self, short: Run) -> None:
+        counts = [sum(row["turn"] == turn for row in short.pairs) for turn in range(7)]
+        assert counts == [625, *[50] * 6]
+
+    def test_populations_keep_their_size(self, short: Run) -> None:
+        for turn in short.turns:
+            members = [
+                row
+                for row in short.individuals
+                if (row["turn"], row["population"]) == (turn["turn"], turn["population"])
+            ]
+            assert len({member["genome"] for member in members}) == 25
+
+    @pytest.mark.parametrize("aggregator", MEANS)
+    @pytest.mark.parametrize("n", [2, 5])
+    def test_fitness_follows_from_the_stored_scores(self, aggregator: str, n: int, tmp_path: Path) -> None:
+        finished = evoframe.run(
+            "quick",
+            out=tmp_path / "run",
+            aggregator=aggregator,
+            collaboration={"n": n},
+            **{"run.generations": 2},
+        )
+        pairs = finished.pairs
+        for individual in finished.individuals:
+            scores = [
+                pair["score"]
+                for pair in pairs
+                if pair["turn"] == individual["turn"]
+                and pair[individual["population"]] == individual["genome"]
+            ]
+            mean = statistics.fmean if individual["turn"] == 0 else MEANS[aggregator]
+            assert individual["fitness"] == pytest.approx(mean(scores), rel=1e-12)
+
+    def test_the_champion_is_enclosed_and_uses_the_codes_of_the_authors(self, short: Run) -> None:
+        body = short.champion.design.roles["morphology"]
+        assert body.shape == (20, 8, 8)
+        interior = body[1:-1, 1:-1, 1:-1].copy()
+        assert set(np.unique(interior)) <= {0, 1, 3}
+        shell = body.copy()
+        shell[1:-1, 1:-1, 1:-1] = 1
+        assert (shell == 1).all()
+
+
+class TestDeterminism:
+    def test_twice_in_a_row_gives_the_same(self, short: Run, tmp_path: Path) -> None:
+        again = evoframe.run("paper", out=tmp_path / "again", **{"run.generations": 3})
+        assert_same_result(short.directory, again.directory)
+
+    @pytest.mark.parametrize(("workers", "hash_seed"), [("1", "0"), ("2", "1"), ("3", "12345")])
+    def test_workers_and_hash_seed_change_nothing(
+        self, short: Run, tmp_path: Path, workers: str, hash_seed: str
+    ) -> None:
+        directory = tmp_path / "run"
+        command = ["run", "--set", "run.generations=3", "--workers", workers, "--out", str(directory)]
+        environment = {**os.environ, "PYTHONHASHSEED": hash_seed}
+        subprocess.run([sys.executable, "-m", "evoframe", "-q", *command], check=True, env=environment)
+        assert_same_result(short.directory, directory)
+
+    def test_two_runs_interleaved_equal_each_alone(self) -> None:
+        def coevolution(seed: int) -> evoframe.Coevolution:
+            return evoframe.assemble(evoframe.load_config("quick", overrides=[f"run.seed={seed}"]))
+
+        def history(turns: list[evoframe.Turn]) -> list[Any]:
+            return [(turn.reports, turn.pairs) for turn in turns]
+
+        together = [list(pair) for pair in zip(coevolution(1), coevolution(2), strict=True)]
+        assert history([first for first, _ in together]) == history(list(coevolution(1)))
+        assert history([second for _, second in together]) == history(list(coevolution(2)))
+
+    @pytest.mark.parametrize("at", [0, 1, 4])
+    def test_a_restored_loop_continues_bit_for_bit(self, at: int) -> None:
+        config = evoframe.load_config("quick", overrides=["collaboration=random"])
+        whole = [(turn.reports, turn.pairs) for turn in evoframe.assemble(config)]
+        first = evoframe.assemble(config)
+        for turn in first:
+            if turn.index == at:
+                break
+        second = evoframe.assemble(config)
+        second.restore(json.loads(json.dumps(first.state())))
+        assert [(turn.reports, turn.pairs) for turn in second] == whole[at + 1 :]
+
+
+class TestSwaps:
+    @pytest.mark.parametrize(
+        "settings",
+        [
+            {"aggregator": "hm"},
+            {"collaboration.n": 5},
+            {"collaboration": "worst"},
+            {"collaboration": "random"},
+            {"collaboration": "best-and-worst", "aggregator": "am"},
+            {"collaboration": {"name": "best-and-worst", "n": 2}, "aggregator": {"name": "wm", "fold": True}},
+            {"collaboration.n": 4, "aggregator": {"name": "wm", "weights": [0.4, 0.3, 0.2, 0.1]}},
+            {"objective": "tip-yz"},
+            {"objective": "face-yz"},
+            {"simulator.phase_unit": "radians"},
+            {"populations.morphology.evolver": "random", "populations.controller.evolver": "random"},
+            {"populations.morphology.encoder.enclosure": False},
+            {"populations.morphology.encoder.canvas": [6, 4, 4]},
+            {"executor": "serial"},
+        ],
+        ids=str,
+    )
+    def test_each_runs(self, settings: dict[str, Any], tmp_path: Path) -> None:
+        finished = evoframe.run("quick", out=tmp_path / "run", **{"run.generations": 1, **settings})
+        assert math.isfinite(finished.champion.displacement)
+
+    def test_a_file_with_weights_runs(self, tmp_path: Path) -> None:
+        path = tmp_path / "mine.toml"
+        path.write_text('extends = "quick"\n[aggregator]\nname = "wm"\nweights = [0.7, 0.3]\n')
+        finished = evoframe.run(path, out=tmp_path / "run")
+        assert finished.config["aggregator"]["weights"] == [0.7, 0.3]
+
+
+def test_own_random_state_is_left_alone(tmp_path: Path) -> None:
+    import random  # noqa: PLC0415
+
+    random.seed(5)
+    np.random.seed(5)  # noqa: NPY002 - the global stream is what must not move
+    before = random.getstate(), np.random.get_state()[1].tolist()  # noqa: NPY002
+    evoframe.run("quick", out=tmp_path / "run", **{"run.generations": 1})
+    assert (random.getstate(), np.random.get_state()[1].tolist()) == before  # noqa: NPY002
