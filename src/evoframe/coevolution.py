@@ -88,15 +88,17 @@ class Coevolution:
         self.evaluator.close()
 
     def _initial_cross(self) -> Turn:
+        started = time.perf_counter()
         for population in self.populations:
             population.reproduce()
         rows = {}
         for index in range(len(self.populations)):
             sizes = self._sizes_of_others(index)
             rows[index] = self._rows(index, [(position,) * len(sizes) for position in range(min(sizes))])
-        return self._play(rows, _arithmetic_mean)
+        return self._play(rows, _arithmetic_mean, started)
 
     def _take_turn(self, population: Population) -> Turn:
+        started = time.perf_counter()
         population.reproduce()
         index = self.populations.index(population)
         chosen = [
@@ -105,7 +107,7 @@ class Coevolution:
             if other is not population
         ]
         teams = list(zip(*chosen, strict=True))
-        return self._play({index: self._rows(index, teams)}, self.aggregator.aggregate)
+        return self._play({index: self._rows(index, teams)}, self.aggregator.aggregate, started)
 
     def _sizes_of_others(self, index: int) -> list[int]:
         return [len(other.genomes) for i, other in enumerate(self.populations) if i != index]
@@ -118,9 +120,11 @@ class Coevolution:
         size = len(self.populations[index].genomes)
         return [[(*team[:index], member, *team[index:]) for team in teams] for member in range(size)]
 
-    def _play(self, rows: dict[int, list[list[Meeting]]], fold: Callable[[Scores], float]) -> Turn:
-        """Score all meetings and let the populations be judged by them."""
-        started, simulated = time.perf_counter(), self.evaluator.simulations
+    def _play(
+        self, rows: dict[int, list[list[Meeting]]], fold: Callable[[Scores], float], started: float
+    ) -> Turn:
+        """Score all meetings of a turn that *started* then, and let the populations be judged by them."""
+        simulated = self.evaluator.simulations
         meetings = list(dict.fromkeys(m for table in rows.values() for row in table for m in row))
         designs = self._designs(meetings)
         scores = dict(zip(meetings, self.evaluator.evaluate(designs), strict=True))
