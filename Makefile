@@ -36,7 +36,7 @@ sanitize: $(VENV)/developing
 	PYTHON=$(BIN)/python libvox/sanitize.sh
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info libvox/evoframe_libvox/_vox.*
+	rm -rf $(VENV) build dist *.egg-info libvox/evoframe_libvox/_vox.c libvox/evoframe_libvox/_vox.*.so
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)

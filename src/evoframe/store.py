@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from evoframe.errors import InputError
+from evoframe.errors import InputError, RunError
 from evoframe.values import BestPair, Design, Pair, PopulationReport, Turn
 
 __all__ = ["FORMAT", "Store", "design_from_json", "design_to_json", "read_champion", "write_json"]
@@ -60,16 +60,15 @@ class Store:
         simulation: What is needed to simulate the champion again, for its file.
 
     Raises:
-        InputError: The directory is not empty, or cannot be written.
+        InputError: The directory is not empty, or cannot be made.
+        RunError: Raised by all methods when the disk does not take what they write.
     """
 
     def __init__(self, directory: Path, roles: list[str], simulation: Mapping[str, Any]) -> None:
         self.directory = directory
         self.simulation = simulation
         _make_empty(directory)
-        self._database = sqlite3.connect(directory / "run.db", isolation_level=None, check_same_thread=False)
-        self._database.execute("PRAGMA journal_mode = WAL")
-        self._database.execute("PRAGMA synchronous = NORMAL")
+        self._database = _new_database(directory / "run.db")
         with self._transaction():
             columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
             for statement in _SCHEMA.format(roles=columns).split(";"):
@@ -128,13 +127,15 @@ class Store:
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
-        self._database.execute("BEGIN IMMEDIATE")
         try:
+            self._database.execute("BEGIN IMMEDIATE")
             yield
-        except BaseException:
-            self._database.execute("ROLLBACK")
-            raise
-        self._database.execute("COMMIT")
+            self._database.execute("COMMIT")
+        except sqlite3.Error as error:
+            raise RunError(f"{self.directory}: the database cannot be written: {error}") from error
+        finally:
+            if self._database.in_transaction:
+                self._database.execute("ROLLBACK")
 
     def _synchronise(self) -> None:
         if time.monotonic() - self._synced >= _SYNC_INTERVAL:
@@ -229,6 +230,17 @@ def _make_empty(directory: Path) -> None:
         raise InputError(f"{directory}: is not empty; choose another directory with --out")
 
 
+def _new_database(path: Path) -> sqlite3.Connection:
+    """Open a database that survives a kill at any moment; see ``_SYNC_INTERVAL`` for a power cut."""
+    try:
+        database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA synchronous = NORMAL")
+    except sqlite3.Error as error:
+        raise InputError(f"{path}: cannot be written: {error}") from error
+    return database
+
+
 def _write_atomically(path: Path, text: str) -> None:
     handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
     try:
@@ -238,9 +250,10 @@ def _write_atomically(path: Path, text: str) -> None:
             os.fsync(file.fileno())
         Path(temporary).chmod(0o644)
         Path(temporary).replace(path)
-    except BaseException:
+    except OSError as error:
+        raise RunError(f"{path}: cannot be written: {error.strerror}") from error
+    finally:
         Path(temporary).unlink(missing_ok=True)
-        raise
 
 
 def _turn_row(turn: int, report: PopulationReport) -> tuple[Any, ...]:

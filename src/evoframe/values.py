@@ -82,7 +82,8 @@ class Outcome:
         steps: ``int64[samples]``, how many steps had been made at each sample.
         times: ``float64[samples]``, the simulated time of each sample, s.
         tracks: Name -> ``float64[samples, 3]``, positions in metres; NaN from the divergence on.
-        diverged_at: The step at which the simulation diverged, or ``None``.
+        diverged_at: The step at which the simulation diverged, or ``None``. What could not even begin has
+            diverged at step 0, and may have no samples.
     """
 
     steps: NDArray[np.int64]

@@ -67,7 +67,7 @@ def _sum_to_one(_: object, __: object, weights: tuple[float, ...]) -> None:
             raise ValueError(f"expected no negative weight, found {weight}")
     total = math.fsum(weights)
     if not abs(total - 1) <= 1e-12:
-        raise ValueError(f"expected weights that sum to 1, these sum to {total}")
+        raise ValueError(f"expected weights that sum to 1, these sum to {total:.15g}")
 
 
 @attrs.frozen
@@ -134,7 +134,31 @@ def _no_weights(n: int) -> str:
 
 
 @attrs.frozen
-class GeometricMean:
+class _PositiveMean:
+    """What the two averages share that are only defined for positive scores."""
+
+    floor: float = attrs.field(default=1e-5, validator=[validators.gt(0), validators.le(LARGEST)])
+    clip: bool = False
+
+    name: ClassVar[str]
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """From *floor* up no score is replaced."""
+        return self.floor, LARGEST
+
+    def check(self, n: int) -> None:
+        """Accept any number of collaborators but none."""
+        _refuse_none(self.name, n)
+
+    def _values(self, scores: Scores) -> list[float]:
+        """Return the sorted *scores*, *floor* in the place of those that are not positive, or too small."""
+        least = self.floor if self.clip else 0.0
+        return sorted(value if value > least else self.floor for value in _ascending(scores))
+
+
+@attrs.frozen
+class GeometricMean(_PositiveMean):
     """Geometric mean of the scores (GM of the paper, arXiv 2510.24510).
 
     As in the code of the paper's authors, a score that is not positive counts as *floor*, while a smaller
@@ -145,52 +169,31 @@ class GeometricMean:
         clip: Raise the positive scores below *floor* to it too, so that a greater score never counts less.
     """
 
-    floor: float = attrs.field(default=1e-5, validator=[validators.gt(0), validators.le(LARGEST)])
-    clip: bool = False
-
-    @property
-    def domain(self) -> tuple[float, float]:
-        """From *floor* up no score is replaced."""
-        return self.floor, LARGEST
-
-    def check(self, n: int) -> None:
-        """Accept any number of collaborators but none."""
-        _refuse_none("gm", n)
+    name = "gm"
 
     def aggregate(self, scores: Scores) -> float:
         """Return the exponential of the mean logarithm of *scores*."""
-        values = _positive(scores, self.floor, clip=self.clip)
+        values = self._values(scores)
         mean = math.exp(math.fsum(math.log(value) for value in values) / len(values))
         return _between(values[0], mean, values[-1])
 
 
 @attrs.frozen
-class HarmonicMean:
+class HarmonicMean(_PositiveMean):
     """Harmonic mean of the scores (HM of the paper, arXiv 2510.24510).
 
-    As in the code of the paper's authors, a score that is not positive counts as *floor*, while a smaller
-    positive one is left alone: 1e-6 counts less than -1.
+    Scores that are not positive are treated as :class:`GeometricMean` does.
 
     Attributes:
         floor: Stands for every score that is not positive; in the objective's unit.
         clip: Raise the positive scores below *floor* to it too, so that a greater score never counts less.
     """
 
-    floor: float = attrs.field(default=1e-5, validator=[validators.gt(0), validators.le(LARGEST)])
-    clip: bool = False
-
-    @property
-    def domain(self) -> tuple[float, float]:
-        """From *floor* up no score is replaced."""
-        return self.floor, LARGEST
-
-    def check(self, n: int) -> None:
-        """Accept any number of collaborators but none."""
-        _refuse_none("hm", n)
+    name = "hm"
 
     def aggregate(self, scores: Scores) -> float:
         """Return the reciprocal of the mean reciprocal of *scores*."""
-        values = _positive(scores, self.floor, clip=self.clip)
+        values = self._values(scores)
         # In units of the smallest value every reciprocal is at most 1: nothing overflows, not even 1/5e-324.
         smallest = values[0]
         mean = smallest * (len(values) / math.fsum(smallest / value for value in values))
@@ -215,12 +218,6 @@ def _ascending(scores: Scores) -> list[float]:
         if not math.isfinite(value):
             raise ValueError(f"scores must be finite, found {value}")
     return values
-
-
-def _positive(scores: Scores, floor: float, *, clip: bool) -> list[float]:
-    """Return the sorted *scores* with *floor* in the place of those that are not positive, or too small."""
-    least = floor if clip else 0.0
-    return sorted(value if value > least else floor for value in _ascending(scores))
 
 
 def _pairs(values: list[float]) -> zip[tuple[float, float]]:

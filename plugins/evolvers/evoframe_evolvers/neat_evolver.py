@@ -12,13 +12,13 @@ import numpy as np
 from attrs.validators import ge, in_
 from neat.reporting import ReporterSet
 from neat.species import Species
-from numpy.typing import NDArray
 
-from evoframe import ConfigurationError, Member, Network
+from evoframe import ConfigurationError
 from evoframe_evolvers.checked import entry, number, rows, whole, wholes
 from evoframe_evolvers.cohort import Cohort
 from evoframe_evolvers.crowding import ExactReproduction, RoomyStagnation
 from evoframe_evolvers.genomes import Counter, GenePool, Sections
+from evoframe_evolvers.network_run import NetworkRun
 from evoframe_evolvers.options import GenomeOptions, at_least, finite, probability
 
 __all__ = ["Neat", "NeatRun"]
@@ -97,7 +97,7 @@ def _selection(options: Neat) -> Sections:
     }
 
 
-class NeatRun:
+class NeatRun(NetworkRun):
     """NEAT at work on one population."""
 
     def __init__(self, pool: GenePool, size: int) -> None:
@@ -108,38 +108,16 @@ class NeatRun:
         self._reproduction = ExactReproduction(config.reproduction_config, reporters, stagnation)
         self._reproduction.genome_indexer = pool.genome_ids
         self._reproduction.innovation_tracker = pool.tracker
-        self._species = neat.DefaultSpeciesSet(config.species_set_config, reporters)
-        self._species.indexer = Counter(1)
+        self._species_set = neat.DefaultSpeciesSet(config.species_set_config, reporters)
+        self._species_set.indexer = Counter(1)
         with pool.stream.swapped_in():
             genomes = self._create()
-            self._species.speciate(config, genomes, 0)
+            self._species_set.speciate(config, genomes, 0)
         self._cohort = Cohort(genomes)
 
-    def ask(self) -> Sequence[Any]:
-        """Return the genomes to evaluate: first the initial ones, later the offspring of those told about."""
-        if self._cohort.finished:
-            self._reproduce()
-        return self._cohort.ask()
-
-    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:  # noqa: ARG002
-        """Take the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
-        self._cohort.tell(fitness)
-
-    def genomes(self) -> Sequence[Any]:
-        """Return the genomes of :meth:`members`; after :meth:`restore` nobody else has them."""
-        return list(self._cohort.genomes.values())
-
-    def members(self) -> Sequence[Member]:
-        """Return the current members, in the order of the last :meth:`ask`."""
-        return self._cohort.members(self._species.get_species_id)
-
-    def express(self, genome: Any) -> Network:
-        """Return the network that *genome* encodes."""
-        return self._pool.express(genome)
-
-    def dump(self, genome: Any) -> Any:
-        """Return *genome* as JSON values."""
-        return self._pool.dump(genome)
+    def _species(self, genome_id: int) -> int | None:
+        species: int = self._species_set.get_species_id(genome_id)
+        return species
 
     def _create(self) -> dict[int, Any]:
         config = self._pool.config
@@ -149,14 +127,14 @@ class NeatRun:
         self._reproduction.ancestors.clear()
         return genomes
 
-    def _reproduce(self) -> None:
+    def _succeed(self) -> None:
         config, generation = self._pool.config, self._cohort.generation
         with self._pool.stream.swapped_in():
-            offspring = self._reproduction.reproduce(config, self._species, self._size, generation)
+            offspring = self._reproduction.reproduce(config, self._species_set, self._size, generation)
             if not offspring:
                 _log.warning("every species died out in generation %d: a fresh start", generation)
                 offspring = self._create()
-            self._species.speciate(config, offspring, generation)
+            self._species_set.speciate(config, offspring, generation)
         self._cohort.succeed(offspring)
 
     def state(self) -> Any:
@@ -165,8 +143,8 @@ class NeatRun:
             "evolver": "neat",
             "pool": self._pool.state(),
             "cohort": self._cohort.state(self.dump),
-            "next_species": self._species.indexer.value,
-            "species": [_dump_species(species) for species in self._species.species.values()],
+            "next_species": self._species_set.indexer.value,
+            "species": [_dump_species(species) for species in self._species_set.species.values()],
         }
 
     def restore(self, state: Any) -> None:
@@ -183,9 +161,9 @@ class NeatRun:
         _check_partition(species, cohort.genomes, next_species)
         self._pool.restore(entry(state, "pool", dict), cohort.genomes.values())
         self._cohort = cohort
-        self._species.indexer.value = next_species
-        self._species.species = {kind.key: kind for kind in species}
-        self._species.genome_to_species = {key: kind.key for kind in species for key in kind.members}
+        self._species_set.indexer.value = next_species
+        self._species_set.species = {kind.key: kind for kind in species}
+        self._species_set.genome_to_species = {key: kind.key for kind in species for key in kind.members}
 
 
 def _dump_species(species: Any) -> dict[str, Any]:

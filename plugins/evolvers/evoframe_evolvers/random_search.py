@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 import attrs
 import neat
 import numpy as np
-from numpy.typing import NDArray
 
-from evoframe import ConfigurationError, Member, Network
+from evoframe import ConfigurationError
 from evoframe_evolvers.checked import entry
 from evoframe_evolvers.cohort import Cohort
 from evoframe_evolvers.genomes import NO_SELECTION, GenePool
+from evoframe_evolvers.network_run import NetworkRun
 from evoframe_evolvers.options import GenomeOptions, at_least
 
 __all__ = ["RandomSearch", "RandomSearchRun"]
@@ -44,7 +43,7 @@ class RandomSearch(GenomeOptions):
         return RandomSearchRun(GenePool(self, NO_SELECTION, inputs, outputs, rng), size, self.mutations)
 
 
-class RandomSearchRun:
+class RandomSearchRun(NetworkRun):
     """Random search at work on one population."""
 
     def __init__(self, pool: GenePool, size: int, mutations: int) -> None:
@@ -53,31 +52,8 @@ class RandomSearchRun:
         self._mutations = mutations
         self._cohort = Cohort(self._draw_all())
 
-    def ask(self) -> Sequence[Any]:
-        """Return the genomes to evaluate, all of them new."""
-        if self._cohort.finished:
-            self._cohort.succeed(self._draw_all())
-        return self._cohort.ask()
-
-    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:  # noqa: ARG002
-        """Take the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
-        self._cohort.tell(fitness)
-
-    def genomes(self) -> Sequence[Any]:
-        """Return the genomes of :meth:`members`; after :meth:`restore` nobody else has them."""
-        return list(self._cohort.genomes.values())
-
-    def members(self) -> Sequence[Member]:
-        """Return the current members, in the order of the last :meth:`ask`."""
-        return self._cohort.members(lambda _: None)
-
-    def express(self, genome: Any) -> Network:
-        """Return the network that *genome* encodes."""
-        return self._pool.express(genome)
-
-    def dump(self, genome: Any) -> Any:
-        """Return *genome* as JSON values."""
-        return self._pool.dump(genome)
+    def _succeed(self) -> None:
+        self._cohort.succeed(self._draw_all())
 
     def _draw_all(self) -> dict[int, Any]:
         self._pool.tracker.reset_generation()

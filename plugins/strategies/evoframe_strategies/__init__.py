@@ -27,18 +27,23 @@ def evoframe_strategies() -> Mapping[str, type[CollaborationStrategy]]:
 
 
 @attrs.frozen
-class Fittest:
-    """The *n* fittest members, the fittest first (the strategy of the paper, arXiv 2510.24510).
-
-    Attributes:
-        n: Number of collaborators.
-    """
+class _Some:
+    """What the strategies share that choose *n* members."""
 
     n: int = attrs.field(default=2, validator=validators.ge(1))
 
     def size(self, n_members: int) -> int:
         """Return *n*, if there are so many members."""
         return _available(self.n, n_members)
+
+
+@attrs.frozen
+class Fittest(_Some):
+    """The *n* fittest members, the fittest first (the strategy of the paper, arXiv 2510.24510).
+
+    Attributes:
+        n: Number of collaborators.
+    """
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> Indices:  # noqa: ARG002
         """Return the indices of the fittest *members*; *rng* is not used."""
@@ -46,18 +51,12 @@ class Fittest:
 
 
 @attrs.frozen
-class Worst:
+class Worst(_Some):
     """The *n* least fit members, the worst first (a strategy of the paper's authors, arXiv 2510.24510).
 
     Attributes:
         n: Number of collaborators.
     """
-
-    n: int = attrs.field(default=2, validator=validators.ge(1))
-
-    def size(self, n_members: int) -> int:
-        """Return *n*, if there are so many members."""
-        return _available(self.n, n_members)
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> Indices:  # noqa: ARG002
         """Return the indices of the least fit *members*; *rng* is not used."""
@@ -87,18 +86,12 @@ class BestAndWorst:
 
 
 @attrs.frozen
-class Random:
+class Random(_Some):
     """*n* members drawn at random, without repeats (a strategy of the authors of arXiv 2510.24510).
 
     Attributes:
         n: Number of collaborators.
     """
-
-    n: int = attrs.field(default=2, validator=validators.ge(1))
-
-    def size(self, n_members: int) -> int:
-        """Return *n*, if there are so many members."""
-        return _available(self.n, n_members)
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> Indices:
         """Return the indices of *members* in the order in which *rng* draws them."""

@@ -144,7 +144,7 @@ def test_members_say_what_is_known() -> None:
         assert member.genome_size == len(genome.nodes) + enabled
         assert member.fitness == fitness.get(member.id)
         assert (member.age > 0) == (member.id in born)
-        assert genome.key in run._species.species[member.species].members
+        assert genome.key in run._species_set.species[member.species].members
     assert len({member.age for member in run.members()}) > 1
 
 
