@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sqlite3
 import statistics
@@ -22,7 +23,7 @@ Load = Callable[..., RunConfig]
 
 
 def rows(directory: Path, table: str) -> list[tuple[Any, ...]]:
-    with sqlite3.connect(directory / "run.db") as database:
+    with contextlib.closing(sqlite3.connect(directory / "run.db")) as database:
         return database.execute(f'SELECT * FROM "{table}"').fetchall()  # noqa: S608
 
 
@@ -145,7 +146,7 @@ class TestPython:
 
     def test_another_format_is_refused(self, toy_config: Load, tmp_path: Path) -> None:
         finished = run(toy_config(), out=tmp_path / "run")
-        with sqlite3.connect(finished.directory / "run.db") as database:
+        with contextlib.closing(sqlite3.connect(finished.directory / "run.db")) as database, database:
             database.execute("UPDATE meta SET value = '99' WHERE key = 'format'")
         with pytest.raises(InputError, match=r"has the format \['99'\], but this evoframe reads format 1"):
             load_run(finished.directory)

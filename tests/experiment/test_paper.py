@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import os
@@ -24,7 +25,7 @@ WEIGHTS = {2: (0.6, 0.4), 3: (0.5, 0.3, 0.2), 5: (0.4, 0.3, 0.15, 0.1, 0.05)}
 
 
 def rows(directory: Path, table: str) -> list[tuple[Any, ...]]:
-    with sqlite3.connect(directory / "run.db") as database:
+    with contextlib.closing(sqlite3.connect(directory / "run.db")) as database:
         return database.execute(f"SELECT * FROM {table}").fetchall()  # noqa: S608
 
 
