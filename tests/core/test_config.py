@@ -233,7 +233,7 @@ class TestRealComponents:
             ("collaboration.n=30", ["collaboration", "30", "25"]),
             ("simulator.step=1", ["simulator.step: unknown option"]),
             ('aggregator.weights=[0.5, "a"]', ['aggregator.weights[1]: expected a number, found "a"']),
-            ("simulator.duration=0", ["simulator.duration: must be > 0, found 0"]),
+            ("simulator.duration=0", ["simulator.duration: must be > 0.0, found 0.0"]),
             ("simulator.duration=0.03", ["objective", "sample 5", "simulator.duration = 0.03 s"]),
             ("simulator.phase_unit=degrees", ['expected one of "cycles", "radians", found "degrees"']),
             ("objective.last=0", ["objective.last: must be >= 1, found 0"]),

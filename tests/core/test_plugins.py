@@ -49,7 +49,7 @@ class TestRegistry:
         ("functions", "message"),
         [
             (
-                {"evoframe_agregators": dict},
+                {"evoframe_agregators": lambda: {"x": toys.Mean}},
                 "unknown hook 'evoframe_agregators'; did you mean 'evoframe_aggreg",
             ),
             ({"evoframe_aggregators": lambda: [toys.Mean]}, "must return a mapping of names to classes"),

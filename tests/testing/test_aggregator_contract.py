@@ -59,7 +59,10 @@ class UnsortedMean(Median):
     """Depends on the order in its last bit only."""
 
     def aggregate(self, scores: Scores) -> float:
-        return float(sum(score / len(scores) for score in scores.tolist()))
+        total = 0.0
+        for score in scores.tolist():  # not sum(), which compensates rounding from Python 3.12 on
+            total += score / len(scores)
+        return total
 
 
 class Product(Median):
