@@ -72,6 +72,14 @@ class Vox:
     bond_damping: float = attrs.field(default=1.0, validator=_NOT_NEGATIVE)
     slow_damping: float = attrs.field(default=0.01, validator=_NOT_NEGATIVE)
 
+    def __attrs_post_init__(self) -> None:
+        self._clock()  # the solver has the last word on what it can do with these settings
+
+    def _clock(self) -> tuple[float, int]:
+        """Return the time step, s, and the number of steps of a body with bonds."""
+        [time_step], [steps] = _model(self, (2, 1, 1)).time_steps(_bar_of_two())
+        return float(time_step), int(steps)
+
     def check(self, record: Record) -> None:
         """Refuse a record with a track or a sample that there will not be.
 
@@ -82,9 +90,9 @@ class Vox:
             if track not in self.tracks:
                 raise ConfigurationError(f"vox has no track '{track}'; tracks: {', '.join(self.tracks)}")
         if record.samples:
-            [time_step], [steps] = _model(self, (2, 1, 1)).time_steps(_bar_of_two())
+            time_step, steps = self._clock()
             everything = attrs.evolve(record, samples=None, initial=False)
-            taken = len(sample_steps(float(time_step), int(steps), everything))
+            taken = len(sample_steps(time_step, steps, everything))
             if max(record.samples) >= taken:
                 raise ConfigurationError(
                     f"sample {max(record.samples)} of one every {record.every} s is never taken: vox makes "
