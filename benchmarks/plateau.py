@@ -55,7 +55,7 @@ def best_within(finished: evoframe.Run, simulations: float) -> float:
         if spent > simulations:
             break
         turn = row["turn"]
-    return max(row["score"] for row in finished.table("champions") if row["turn"] <= turn)
+    return max(row["score"] for row in finished.table("best_pairs") if row["turn"] <= turn)
 
 
 def all_contractile() -> tuple[float, float]:
@@ -76,7 +76,7 @@ def all_contractile() -> tuple[float, float]:
 
 def describe(name: str, runs: list[evoframe.Run], budget: float) -> dict[str, Any]:
     """Return the figures of one configuration."""
-    best = [run.champion.displacement for run in runs]
+    best = [run.champion.score for run in runs]
     low, median, high = statistics.quantiles(best, n=4, method="inclusive")
     return {
         "configuration": name,

@@ -3,11 +3,10 @@
 import evoframe
 
 config = evoframe.load_config("quick", overrides=["run.generations=30", "aggregator=am"])
-coevolution = evoframe.assemble(config)
 patience, waited = 10, 0
-for turn in coevolution:
-    waited = 0 if turn.best_pair else waited + 1
-    if waited == patience:
-        break
-coevolution.close()
+with evoframe.assemble(config) as coevolution:
+    for turn in coevolution:
+        waited = 0 if turn.best_pair else waited + 1
+        if waited == patience:
+            break
 print(f"best displacement after {coevolution.turn} turns: {coevolution.best_score} m")

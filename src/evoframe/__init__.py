@@ -6,7 +6,7 @@ the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :c
 
 from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
-from evoframe.config import RunConfig, load_config
+from evoframe.config import Chosen, PopulationConfig, RunConfig, RunSettings, load_config
 from evoframe.errors import (
     ConfigurationError,
     EvoframeError,
@@ -15,8 +15,12 @@ from evoframe.errors import (
     PluginWarning,
     RunError,
 )
+from evoframe.evaluation import Evaluator
 from evoframe.hookspecs import hookimpl
+from evoframe.layers import Layer
 from evoframe.loading import Champion, Run, load_run
+from evoframe.plugins import Plugins, discover, suggestion
+from evoframe.population import Population
 from evoframe.protocols import (
     Aggregator,
     CollaborationStrategy,
@@ -47,17 +51,20 @@ __all__ = [
     "Aggregator",
     "BestPair",
     "Champion",
+    "Chosen",
     "Coevolution",
     "CollaborationStrategy",
     "ConfigurationError",
     "Design",
     "Encoder",
+    "Evaluator",
     "EvoframeError",
     "Evolver",
     "EvolverRun",
     "Executor",
     "ExecutorRun",
     "InputError",
+    "Layer",
     "Member",
     "Network",
     "Objective",
@@ -65,19 +72,25 @@ __all__ = [
     "Pair",
     "PluginError",
     "PluginWarning",
+    "Plugins",
+    "Population",
+    "PopulationConfig",
     "PopulationReport",
     "Record",
     "Run",
     "RunConfig",
     "RunError",
+    "RunSettings",
     "Scores",
     "Simulator",
     "Turn",
     "Workload",
     "__version__",
     "assemble",
+    "discover",
     "hookimpl",
     "load_config",
     "load_run",
     "run",
+    "suggestion",
 ]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import numbers
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, Self, TypeAlias
 
 import attrs
 import numpy as np
@@ -21,6 +22,8 @@ __all__ = ["Coevolution"]
 Meeting: TypeAlias = tuple[int, ...]
 """One position in each population."""
 
+Fold: TypeAlias = Callable[[Scores], float]
+
 
 @attrs.define
 class Coevolution:
@@ -28,7 +31,10 @@ class Coevolution:
 
     First everyone meets everyone and gets the arithmetic mean of its scores. Then, turn by turn, one
     population reproduces and all its members are judged with collaborators from the others, whose fitness
-    stays as it was (paper.md, "The loop").
+    stays as it was (paper.md, "The loop"). If the fittest of all populations have not met in the last turn,
+    they do so in one more, which judges nobody.
+
+    Collaborators from several other populations are combined position by position: the i-th of each.
 
     Attributes:
         populations: In the order in which they take turns and are decoded; at least two.
@@ -47,22 +53,36 @@ class Coevolution:
     generations: int
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
+    _fittest_have_met: bool = attrs.field(default=False, init=False)
 
     @property
     def length(self) -> int:
-        """Number of turns after the initial meeting."""
+        """Number of turns after the initial meeting in which a population reproduces."""
         return self.generations * len(self.populations)
+
+    @property
+    def finished(self) -> bool:
+        """Whether there is nothing left to do."""
+        return self.turn >= self.length and self._fittest_have_met
 
     def __iter__(self) -> Iterator[Turn]:
         """Let everyone meet everyone, then let the populations take turns."""
         if self.turn < 0:
             yield self._initial_cross()
         while self.turn < self.length:
-            yield self._take_turn(self.populations[self.turn % len(self.populations)])
+            yield self._take_turn(self.turn % len(self.populations))
+        if not self._fittest_have_met:
+            yield self._closing_meeting()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def fittest_pair(self) -> Pair:
-        """Return the fittest of each population as a pair, which may meet here for the first time."""
-        meeting = tuple(population.fittest() for population in self.populations)
+        """Return the fittest of each population as a pair; after the last turn, they have met."""
+        meeting = self._fittest()
         [score] = self.evaluator.evaluate(self._designs([meeting]))
         return self._pair(meeting, score)
 
@@ -72,14 +92,19 @@ class Coevolution:
         Args:
             changed: The populations whose state is wanted; by default all.
         """
-        loop = {"turn": self.turn, "best_score": self.best_score}
+        loop = {
+            "turn": self.turn,
+            "best_score": self.best_score,
+            "fittest_have_met": self._fittest_have_met,
+        }
         wanted = [p for p in self.populations if changed is None or p.name in changed]
         return {"loop": loop, **{f"population/{p.name}": p.state() for p in wanted}}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from what :meth:`state` returned, bit for bit as if never interrupted."""
-        self.turn = state["loop"]["turn"]
-        self.best_score = state["loop"]["best_score"]
+        loop = state["loop"]
+        self.turn, self.best_score = loop["turn"], loop["best_score"]
+        self._fittest_have_met = loop["fittest_have_met"]
         for population in self.populations:
             population.restore(state[f"population/{population.name}"])
 
@@ -91,58 +116,82 @@ class Coevolution:
         started = time.perf_counter()
         for population in self.populations:
             population.reproduce()
-        rows = {}
-        for index in range(len(self.populations)):
-            sizes = self._sizes_of_others(index)
-            rows[index] = self._rows(index, [(position,) * len(sizes) for position in range(min(sizes))])
-        return self._play(rows, _arithmetic_mean, started)
-
-    def _take_turn(self, population: Population) -> Turn:
-        started = time.perf_counter()
-        population.reproduce()
-        index = self.populations.index(population)
-        chosen = [
-            self.strategy.select(other.members, population.rng).tolist()
-            for other in self.populations
-            if other is not population
+        everyone = range(len(self.populations))
+        meetings = [
+            meeting for index in everyone for meeting in self._meetings(index, self._everyone_else(index))
         ]
-        teams = list(zip(*chosen, strict=True))
-        return self._play({index: self._rows(index, teams)}, self.aggregator.aggregate, started)
+        return self._play(meetings, everyone, _arithmetic_mean, started)
 
-    def _sizes_of_others(self, index: int) -> list[int]:
-        return [len(other.genomes) for i, other in enumerate(self.populations) if i != index]
+    def _take_turn(self, index: int) -> Turn:
+        started = time.perf_counter()
+        self.populations[index].reproduce()
+        teams = list(zip(*self._chosen(index), strict=True))
+        return self._play(self._meetings(index, teams), [index], self.aggregator.aggregate, started)
 
-    def _rows(self, index: int, teams: Sequence[tuple[int, ...]]) -> list[list[Meeting]]:
-        """Return the meetings of each member of a population with each of the *teams*.
+    def _closing_meeting(self) -> Turn:
+        return self._play([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
 
-        A team has one collaborator from every other population: the i-th chosen of each.
+    def _everyone_else(self, index: int) -> list[tuple[int, ...]]:
+        """Return teams of which every member of every other population is part; small populations recur."""
+        sizes = [len(other.genomes) for i, other in enumerate(self.populations) if i != index]
+        return [tuple(position % size for size in sizes) for position in range(max(sizes))]
+
+    def _chosen(self, index: int) -> list[list[int]]:
+        """Return the positions of the collaborators from each population but one.
+
+        Raises:
+            RunError: The strategy chose what is not there, or the same twice.
         """
-        size = len(self.populations[index].genomes)
-        return [[(*team[:index], member, *team[index:]) for team in teams] for member in range(size)]
+        chosen = []
+        for other in (other for i, other in enumerate(self.populations) if i != index):
+            selected = self.strategy.select(other.members, self.populations[index].rng)
+            positions = np.asarray(selected).tolist()
+            if sorted(set(positions) & set(range(len(other.members)))) != sorted(positions):
+                raise RunError(
+                    f"the collaboration strategy {_name(self.strategy)} chose {positions} "
+                    f"of the {len(other.members)} members of '{other.name}'"
+                )
+            chosen.append(positions)
+        return chosen
 
-    def _play(
-        self, rows: dict[int, list[list[Meeting]]], fold: Callable[[Scores], float], started: float
-    ) -> Turn:
-        """Score all meetings of a turn that *started* then, and let the populations be judged by them."""
+    def _meetings(self, index: int, teams: Sequence[tuple[int, ...]]) -> list[Meeting]:
+        """Return the meetings of each member of a population with each of the *teams* from the others."""
+        size = len(self.populations[index].genomes)
+        return [(*team[:index], member, *team[index:]) for member in range(size) for team in teams]
+
+    def _fittest(self) -> Meeting:
+        return tuple(population.fittest() for population in self.populations)
+
+    def _play(self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float) -> Turn:
+        """Score all *meetings* of a turn, and let them judge some of the populations."""
         simulated = self.evaluator.simulations
-        meetings = list(dict.fromkeys(m for table in rows.values() for row in table for m in row))
-        designs = self._designs(meetings)
-        scores = dict(zip(meetings, self.evaluator.evaluate(designs), strict=True))
-        floor = min((score.value for score in scores.values() if score.value is not None), default=None)
-        for index, table in rows.items():
-            self.populations[index].judge([_fitness(row, scores, fold) for row in table], floor)
+        different = list(dict.fromkeys(meetings))
+        designs = self._designs(different)
+        scores = dict(zip(different, self.evaluator.evaluate(designs), strict=True))
+        for index in judged:
+            self._judge(index, scores, fold)
         self.turn += 1
+        self._fittest_have_met = self._fittest() in scores
         return Turn(
             index=self.turn,
-            reports=tuple(self.populations[index].report() for index in rows),
+            reports=tuple(self.populations[index].report() for index in judged),
             pairs=tuple(self._pair(meeting, score) for meeting, score in scores.items()),
             best_pair=self._best_pair(scores, designs),
             workload=Workload(
-                pairs=len(meetings),
+                pairs=len(scores),
                 simulations=self.evaluator.simulations - simulated,
                 seconds=time.perf_counter() - started,
             ),
         )
+
+    def _judge(self, index: int, scores: Mapping[Meeting, Score], fold: Fold) -> None:
+        """Give every member of a population the fold of the scores of all its meetings."""
+        population = self.populations[index]
+        rows: list[list[float | None]] = [[] for _ in population.genomes]
+        for meeting, score in scores.items():
+            rows[meeting[index]].append(score.value)
+        floor = min((score.value for score in scores.values() if score.value is not None), default=None)
+        population.judge([_fitness(row, fold) for row in rows], floor)
 
     def _designs(self, meetings: Sequence[Meeting]) -> list[Design]:
         """Decode the meetings; what the first populations of several meetings share is decoded once."""
@@ -187,13 +236,16 @@ def _arithmetic_mean(scores: Scores) -> float:
     return math.fsum(scores) / len(scores)
 
 
-def _fitness(
-    row: Sequence[Meeting], scores: Mapping[Meeting, Score], fold: Callable[[Scores], float]
-) -> float | None:
-    values = [scores[meeting].value for meeting in row]
-    if None in values:
+def _fitness(row: Sequence[float | None], fold: Fold) -> float | None:
+    """Return the fold of the scores of an individual, or ``None`` if one of its simulations diverged."""
+    values = [value for value in row if value is not None]
+    if len(values) < len(row):
         return None
-    fitness = float(fold(np.array(values, dtype=np.float64)))
-    if not math.isfinite(fitness):
-        raise RunError(f"the aggregator gave the fitness {fitness} for the scores {values}")
-    return fitness
+    fitness = fold(np.array(values, dtype=np.float64))
+    if not isinstance(fitness, numbers.Real) or not math.isfinite(fitness):
+        raise RunError(f"the aggregator gave the fitness {fitness!r} for the scores {values}")
+    return float(fitness)
+
+
+def _name(component: object) -> str:
+    return type(component).__name__

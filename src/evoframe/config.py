@@ -12,7 +12,7 @@ import attrs
 import tomli_w
 from attrs import validators
 
-from evoframe.errors import ConfigurationError
+from evoframe.errors import ConfigurationError, PluginError
 from evoframe.layers import (
     COMPONENTS,
     POPULATION_COMPONENTS,
@@ -22,7 +22,7 @@ from evoframe.layers import (
     preset_names,
     read_layers,
 )
-from evoframe.plugins import Plugins, Source, did_you_mean, discover
+from evoframe.plugins import KINDS, Offer, Plugins, Source, discover, suggestion
 from evoframe.protocols import (
     Aggregator,
     CollaborationStrategy,
@@ -172,30 +172,26 @@ class RunConfig:
 def load_config(
     source: str | Path = "paper",
     *,
-    tables: Tree | None = None,
-    origin: str = "arguments",
-    overrides: Iterable[str] = (),
+    overrides: Iterable[str | Layer] = (),
     plugins: Plugins | None = None,
 ) -> RunConfig:
     """Read, resolve and check a configuration.
 
     Args:
         source: Name of a preset, or path of a TOML file.
-        tables: Settings that override those of the source.
-        origin: What messages call those *tables*.
-        overrides: ``key=value`` with a dotted key and a TOML value, as given to ``--set``; they win.
+        overrides: What is set on top of that, the last one wins: ``key=value`` with a dotted key and a TOML
+            value, as given to ``--set``, or layers of tables.
         plugins: The plugins to choose from; by default those that are installed.
 
     Raises:
         ConfigurationError: With all faults that were found, each with its file and key.
-        PluginError: A plugin that the configuration requires cannot be used.
     """
-    layers = read_layers(source, [Layer(origin, tables)] if tables else [], overrides)
+    layers = read_layers(source, overrides)
     tree = layers.merged()
     reading = _Reading(tree)
     settings = reading.section("plugins", PluginSettings) or PluginSettings()
     usable = (plugins or discover()).without(settings.block)
-    usable.require(settings.require)
+    reading.refuse_missing(usable, settings.require)
     config = reading.config(usable, settings, Path(source).stem)
     if config is None:
         raise ConfigurationError(_report(reading.faults, layers))
@@ -224,6 +220,13 @@ class _Reading:
     def section(self, key: str, class_: type[C]) -> C | None:
         return self._structured(self.tree.get(key, {}), class_, (key,))
 
+    def refuse_missing(self, plugins: Plugins, required: Iterable[str]) -> None:
+        for distribution in required:
+            try:
+                plugins.require([distribution])
+            except PluginError as error:
+                self.faults.append(Fault(("plugins", "require"), str(error)))
+
     def config(self, plugins: Plugins, settings: PluginSettings, label: str) -> RunConfig | None:
         """Return the configuration, or ``None`` if there are faults."""
         self._refuse_unknown_keys()
@@ -251,12 +254,12 @@ class _Reading:
             return None
 
     def _refuse_unknown_keys(self) -> None:
-        known = ["run", "populations", *COMPONENTS, "plugins", "extends"]
+        known = ["run", "populations", *COMPONENTS, "plugins"]
         for key in self.tree:
-            if key not in known:
-                hint = did_you_mean(key, known)
-                message = f"unknown key{hint}{'' if hint else ';'} keys: {', '.join(known)}"
-                self.faults.append(Fault((key,), message))
+            if key == "extends":
+                self.faults.append(Fault((key,), "can only be set in a file"))
+            elif key not in known:
+                self.faults.append(Fault((key,), f"unknown key{suggestion(key, known, 'keys')}"))
 
     def _chosen(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Chosen[Any] | None:
         if not isinstance(table, Mapping) or not isinstance(table.get("name"), str):
@@ -270,7 +273,11 @@ class _Reading:
             self.faults.append(Fault(path, str(error)))
             return None
         component = self._structured(options, offer.component, path)
-        return None if component is None else Chosen(table["name"], component, offer.source)
+        if component is None:
+            return None
+        breaches = [Fault(path, message) for message in _breaches(offer, component)]
+        self.faults += breaches
+        return None if breaches else Chosen(table["name"], component, offer.source)
 
     def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
         tables = self.tree.get("populations")
@@ -283,9 +290,10 @@ class _Reading:
         self, role: str, table: Any, choose: Callable[..., Chosen[Any] | None]
     ) -> PopulationConfig | None:
         path = ("populations", role)
-        if not _ROLE.fullmatch(role) or role in _RESERVED_ROLES:
-            message = f"'{role}' is no name for a population: use lower-case letters, digits, - and _"
-            self.faults.append(Fault(path, message))
+        if role in _RESERVED_ROLES:
+            self.faults.append(Fault(path, f"'{role}' is a column of the database; choose another name"))
+        elif not _ROLE.fullmatch(role):
+            self.faults.append(Fault(path, f"'{role}': use lower-case letters, digits, - and _"))
         if not isinstance(table, Mapping):
             self.faults.append(Fault(path, f"expected a table, found {found(table)}"))
             return None
@@ -317,18 +325,18 @@ class _Checks:
     def _sizes(self) -> Iterator[Fault]:
         for role, population in self.populations.items():
             check = functools.partial(population.evolver.component.check, population.size)
-            yield from _refusal(("populations", role, "size"), check)
+            yield from _refusal(("populations", role), check)
 
     def _collaboration(self) -> Iterator[Fault]:
         strategy = self.chosen.get("collaboration")
         if strategy is None:
             return
         counts: set[int] = set()
-        for size in dict.fromkeys(population.size for population in self.populations.values()):
+        for role, population in self.populations.items():
             try:
-                counts.add(strategy.size(size))
+                counts.add(strategy.size(population.size))
             except ConfigurationError as error:
-                yield Fault(("collaboration",), str(error))
+                yield Fault(("collaboration",), f"{error} (population '{role}')")
                 return
         if len(self.populations) > 2 and len(counts) > 1:
             message = f"populations of different sizes give different numbers of collaborators: {counts}"
@@ -360,6 +368,26 @@ class _Checks:
         if "simulator" in self.chosen and "objective" in self.chosen:
             check = functools.partial(self.chosen["simulator"].check, self.chosen["objective"].record)
             yield from _refusal(("objective",), check)
+
+
+def _breaches(offer: Offer, component: Any) -> Iterator[str]:
+    """Yield what keeps a component from being one of its kind."""
+    where = f"{offer.kind} '{offer.name}' of plugin {offer.source}"
+    protocol = KINDS[offer.kind].protocol
+    members = sorted(name for name in dir(protocol) if not name.startswith("_"))
+    missing = [name for name in members if not hasattr(component, name)]
+    if missing:
+        yield f"{where} has no {' and no '.join(missing)}"
+    if not _is_frozen(component):
+        yield f"{where} is no frozen attrs class: its options could change while a run goes on"
+
+
+def _is_frozen(component: Any) -> bool:
+    try:
+        component.no_such_option = None
+    except AttributeError as error:  # slots forbid it too, but not a change of the options
+        return isinstance(error, attrs.exceptions.FrozenInstanceError)
+    return False
 
 
 def _refusal(path: tuple[str, ...], check: Callable[[], object]) -> Iterator[Fault]:

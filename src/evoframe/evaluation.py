@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from collections.abc import Sequence
 
 import attrs
@@ -70,6 +71,8 @@ class Evaluator:
 
     def _simulate(self, designs: list[Design]) -> list[Score]:
         outcomes = self.simulator.simulate(designs, self.objective.record)
+        if len(outcomes) != len(designs):
+            raise RunError(f"the simulator returned {len(outcomes)} outcomes for {len(designs)} designs")
         return [
             Score(None, outcome.diverged_at)
             if outcome.diverged_at is not None
@@ -79,6 +82,6 @@ class Evaluator:
 
 
 def _finite(score: float) -> float:
-    if not math.isfinite(score):
-        raise RunError(f"the objective gave the score {score} for a simulation that did not diverge")
+    if not isinstance(score, numbers.Real) or not math.isfinite(score):
+        raise RunError(f"the objective gave the score {score!r} for a simulation that did not diverge")
     return float(score)

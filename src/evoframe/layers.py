@@ -12,9 +12,18 @@ from typing import Any
 import attrs
 
 from evoframe.errors import ConfigurationError
-from evoframe.plugins import did_you_mean
+from evoframe.plugins import suggestion
 
-__all__ = ["COMPONENTS", "POPULATION_COMPONENTS", "Layer", "Layers", "Tree", "preset_names", "read_layers"]
+__all__ = [
+    "COMPONENTS",
+    "POPULATION_COMPONENTS",
+    "Layer",
+    "Layers",
+    "Tree",
+    "layer_of",
+    "preset_names",
+    "read_layers",
+]
 
 Tree = dict[str, Any]
 
@@ -78,19 +87,28 @@ def preset_names() -> list[str]:
     )
 
 
-def read_layers(source: str | Path, tables: Iterable[Layer] = (), overrides: Iterable[str] = ()) -> Layers:
-    """Read a preset or file with what it extends, and put the *tables* and the *overrides* on top.
+def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> Layers:
+    """Read a preset or file with what it extends, and put the *overrides* on top.
 
     Args:
         source: Name of a preset, or path of a TOML file.
-        tables: Further layers.
-        overrides: ``key=value`` with a dotted key and a TOML value, as given to ``--set``.
+        overrides: Layers, or ``key=value`` with a dotted key and a TOML value, as given to ``--set``; the
+            last one wins.
 
     Raises:
         ConfigurationError: Something cannot be read; says what and where.
     """
-    layers = [*_chain(str(source), Path(), ()), *tables, *(_override(text) for text in overrides)]
+    on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
+    layers = [*_chain(str(source), Path(), ()), *on_top]
     return Layers(tuple(Layer(layer.origin, _with_component_tables(layer)) for layer in layers))
+
+
+def layer_of(origin: str, key: str, value: Any) -> Layer:
+    """Return the layer that sets one dotted *key*."""
+    tree: Any = value
+    for part in reversed(key.split(".")):
+        tree = {part: tree}
+    return Layer(origin, tree)
 
 
 def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:
@@ -98,17 +116,21 @@ def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]
     origin, text, folder = _read(source, relative_to)
     if origin in seen:
         raise ConfigurationError(f"{origin}: extends itself: {' -> '.join([*seen, origin])}")
-    try:
-        tree = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigurationError(f"{origin}: not valid TOML: {error}") from error
+    tree = _parsed(text, origin)
     tree.pop("provenance", None)  # what a run wrote about itself is no setting
     base = tree.pop("extends", "paper" if origin != "preset 'paper'" else False)
     if base is False:
         return [Layer(origin, tree)]
-    if not isinstance(base, str):
+    if not isinstance(base, str) or not base:
         raise ConfigurationError(f"{origin}: extends: expected the name of a preset or file, or false")
     return [*_chain(base, folder, (*seen, origin)), Layer(origin, tree)]
+
+
+def _parsed(text: str, origin: str) -> Tree:
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
+        raise ConfigurationError(f"{origin}: not valid TOML: {error}") from error
 
 
 def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
@@ -120,7 +142,7 @@ def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
     if not source.endswith(".toml") and not path.exists():
         known = preset_names()
         raise ConfigurationError(
-            f"there is no preset '{source}'{did_you_mean(source, known)} presets: {', '.join(known)}; "
+            f"there is no preset '{source}'{suggestion(source, known, 'presets')}; "
             "a file needs the ending .toml"
         )
     try:
@@ -129,6 +151,8 @@ def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
         raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ConfigurationError(f"{path}: not valid TOML: it is not UTF-8 text") from error
+    except ValueError as error:  # a name that no file can have
+        raise ConfigurationError(f"{str(path)!r}: cannot be read: {error}") from error
 
 
 def _override(text: str) -> Layer:
@@ -136,19 +160,13 @@ def _override(text: str) -> Layer:
     key = key.strip()
     if not equals or not _KEY.fullmatch(key):
         raise ConfigurationError(f"--set {text}: expected key=value, as in aggregator=hm or run.seed=2")
-    tree: Any = _value(text, value.strip())
-    for part in reversed(key.split(".")):
-        tree = {part: tree}
-    return Layer(f"--set {text}", tree)
+    return layer_of(f"--set {text}", key, _value(text, value.strip()))
 
 
 def _value(text: str, value: str) -> Any:
     if _BARE_WORD.fullmatch(value) and value not in ("true", "false", "inf", "nan"):
         return value
-    try:
-        tree = tomllib.loads(f"value = {value}")
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigurationError(f"--set {text}: the right side is no TOML value: {error}") from error
+    tree = _parsed(f"value = {value}", f"--set {text}")
     if list(tree) != ["value"]:
         raise ConfigurationError(f"--set {text}: the right side must be one TOML value")
     return tree["value"]

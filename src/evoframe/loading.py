@@ -12,7 +12,7 @@ from typing import Any
 import attrs
 
 from evoframe.errors import InputError
-from evoframe.store import FORMAT, read_champion
+from evoframe.store import FORMAT, champion_from_json
 from evoframe.values import Design
 
 __all__ = ["Champion", "Run", "load_run"]
@@ -23,12 +23,12 @@ class Champion:
     """The best pair that was really simulated.
 
     Attributes:
-        displacement: What the objective gave, m.
+        score: What the objective gave; a displacement in metres with all built-in objectives.
         design: Body and controller.
         simulation: The tables ``simulator`` and ``objective`` that it was simulated with.
     """
 
-    displacement: float
+    score: float
     design: Design
     simulation: dict[str, Any]
 
@@ -47,7 +47,7 @@ class Run:
 
     @property
     def turns(self) -> list[dict[str, Any]]:
-        """One row for each population that was evaluated in a turn: best, best_so_far, champion, mean."""
+        """One row for each population that was judged in a turn: best, best_so_far, mean, ..."""
         return self.table("turns")
 
     @property
@@ -73,9 +73,20 @@ class Run:
 
     @property
     def champion(self) -> Champion:
-        """The best pair so far."""
-        design, simulation, displacement = read_champion(self.directory / "champion.json")
-        return Champion(displacement, design, simulation)
+        """The best pair so far.
+
+        Raises:
+            InputError: There is none yet, or the database is damaged.
+        """
+        path = self.directory / "run.db"
+        rows = self.table("best_pairs")
+        if not rows:
+            raise InputError(f"{path}: has no pair with a score yet")
+        try:
+            design, simulation, score = champion_from_json(rows[-1]["document"])
+        except ValueError as error:
+            raise InputError(f"{path}: best_pairs: {error}") from error
+        return Champion(score, design, simulation)
 
     def table(self, name: str) -> list[dict[str, Any]]:
         """Return the rows of a table of the database, in the order of their keys.

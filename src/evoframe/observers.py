@@ -30,7 +30,7 @@ class Observers:
             others = [other for other in self._plugins if other is not plugin]
             try:
                 self._manager.subset_hook_caller(hook, others)(**arguments)
-            except Exception as error:  # noqa: BLE001 - whatever an observer does, the run goes on
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever it does, the run goes on
                 self._active.remove(plugin)
                 name = self._manager.get_name(plugin)
                 cause = f"{type(error).__name__}: {error}"

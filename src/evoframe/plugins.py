@@ -7,6 +7,7 @@ import importlib
 import importlib.metadata
 import importlib.util
 import os
+import re
 import sys
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
@@ -17,23 +18,38 @@ from typing import Any
 import attrs
 import pluggy
 
-from evoframe import hookspecs
+from evoframe import hookspecs, protocols
 from evoframe.errors import ConfigurationError, PluginError, PluginWarning
 
-__all__ = ["KINDS", "Offer", "Plugins", "Skipped", "Source", "did_you_mean", "discover"]
+__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "Source", "discover", "suggestion"]
 
 GROUP = "evoframe"
+_COMPONENT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 
-KINDS: Mapping[str, str] = {
-    "aggregator": "evoframe_aggregators",
-    "encoder": "evoframe_encoders",
-    "evolver": "evoframe_evolvers",
-    "executor": "evoframe_executors",
-    "objective": "evoframe_objectives",
-    "simulator": "evoframe_simulators",
-    "strategy": "evoframe_strategies",
+
+@attrs.frozen
+class Kind:
+    """A kind of component.
+
+    Attributes:
+        hook: The hook that offers components of this kind.
+        protocol: What they must do.
+    """
+
+    hook: str
+    protocol: type[Any]
+
+
+KINDS: Mapping[str, Kind] = {
+    "aggregator": Kind("evoframe_aggregators", protocols.Aggregator),
+    "encoder": Kind("evoframe_encoders", protocols.Encoder),
+    "evolver": Kind("evoframe_evolvers", protocols.Evolver),
+    "executor": Kind("evoframe_executors", protocols.Executor),
+    "objective": Kind("evoframe_objectives", protocols.Objective),
+    "simulator": Kind("evoframe_simulators", protocols.Simulator),
+    "strategy": Kind("evoframe_strategies", protocols.CollaborationStrategy),
 }
-"""Kind of component -> the hook that offers it."""
+"""Name of a kind in messages -> the kind."""
 
 
 @attrs.frozen(order=True)
@@ -79,10 +95,19 @@ class Skipped:
     cause: str
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return ``; did you mean 'x'?`` for the known word closest to *word*, or nothing."""
-    close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.5)
-    return f"; did you mean '{close[0]}'?" if close else ""
+def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
+    """Return how a message about an unknown *word* ends.
+
+    Args:
+        word: What was written.
+        known: What could have been meant.
+        label: What to call a list of all that is known; without it there is none.
+    """
+    words = list(known)
+    close = difflib.get_close_matches(word, words, n=1, cutoff=0.5)
+    meant = f"; did you mean '{close[0]}'?" if close else ""
+    listed = f"{'' if meant else ';'} {label}: {', '.join(words) or 'none'}" if label else ""
+    return meant + listed
 
 
 def _new_manager() -> pluggy.PluginManager:
@@ -105,30 +130,31 @@ class Plugins:
         Raises:
             PluginError: It implements no hook or an unknown one, or offers something that is no component.
         """
+        name = f"{source.distribution}:{source.entry_point}"
+        if self.manager.has_plugin(name):
+            raise PluginError("there is a plugin of that name already")
         try:
-            self.manager.register(plugin, name=f"{source.distribution}:{source.entry_point}")
-        except (pluggy.PluginValidationError, ValueError) as error:
+            self.manager.register(plugin, name=name)
+            _check_hooks(self.manager, plugin)
+            self.offers += list(_offers(self.manager, plugin, source))
+        except BaseException as error:
             if self.manager.is_registered(plugin):
                 self.manager.unregister(plugin)
-            raise PluginError(str(error)) from error
-        try:
-            _check_hooks(self.manager, plugin)
-            self.offers += list(_offers(plugin, source))
-        except Exception:
-            self.manager.unregister(plugin)
+            if isinstance(error, pluggy.PluginValidationError | ValueError):
+                raise PluginError(str(error)) from error
             raise
 
     def without(self, distributions: Iterable[str]) -> Plugins:
         """Return the same plugins but those of the named *distributions*."""
-        blocked = set(distributions)
+        blocked = {_normalized(distribution) for distribution in distributions}
         if not blocked:
             return self
         kept = Plugins(skipped=self.skipped)
         for name, plugin in self.manager.list_name_plugin():
             distribution, entry_point = name.rsplit(":", 1)
-            if plugin is not None and distribution not in blocked:
+            if plugin is not None and _normalized(distribution) not in blocked:
                 kept.manager.register(plugin, name=f"{distribution}:{entry_point}")
-        kept.offers = [offer for offer in self.offers if offer.source.distribution not in blocked]
+        kept.offers = [o for o in self.offers if _normalized(o.source.distribution) not in blocked]
         return kept
 
     def require(self, distributions: Iterable[str]) -> None:
@@ -138,11 +164,13 @@ class Plugins:
             PluginError: One is missing or was skipped; says why.
         """
         names = {name.rsplit(":", 1)[0] for name, _ in self.manager.list_name_plugin()}
+        usable = {_normalized(name) for name in names}
         for distribution in distributions:
-            causes = [s.cause for s in self.skipped if s.source.distribution == distribution]
+            wanted = _normalized(distribution)
+            causes = [s.cause for s in self.skipped if _normalized(s.source.distribution) == wanted]
             if causes:
                 raise PluginError(f"required plugin '{distribution}' cannot be used: {causes[0]}")
-            if distribution not in names:
+            if wanted not in usable:
                 found = ", ".join(sorted(names))
                 raise PluginError(f"required plugin '{distribution}' is not installed; found: {found}")
 
@@ -160,7 +188,9 @@ class Plugins:
         found = [
             offer
             for offer in self.offers
-            if offer.kind == kind and offer.name == name and distribution in ("", offer.source.distribution)
+            if offer.kind == kind
+            and offer.name == name
+            and _normalized(distribution) in ("", _normalized(offer.source.distribution))
         ]
         if len(found) == 1:
             return found[0]
@@ -170,9 +200,7 @@ class Plugins:
         raise ConfigurationError(self._unknown(kind, asked))
 
     def _unknown(self, kind: str, asked: str) -> str:
-        known = self.names(kind)
-        message = f"unknown {kind} '{asked}'{did_you_mean(asked, known)}"
-        message += f"{'' if message.endswith('?') else ';'} installed: {', '.join(known) or 'none'}"
+        message = f"unknown {kind} '{asked}'{suggestion(asked, self.names(kind), 'installed')}"
         if self.skipped:
             causes = "; ".join(f"{skipped.source}: {skipped.cause}" for skipped in self.skipped)
             message += f" (skipped plugins: {causes})"
@@ -195,14 +223,19 @@ def discover(modules: Iterable[str] = ()) -> Plugins:
         PluginWarning: An installed plugin cannot be used; the others are.
     """
     plugins = Plugins()
-    blocked = _listed("EVOFRAME_PLUGINS_BLOCK")
+    blocked = {_normalized(name) for name in _listed("EVOFRAME_PLUGINS_BLOCK")}
     for source, entry_point in _entry_points():
-        if source.distribution not in blocked:
+        if _normalized(source.distribution) not in blocked:
             _load_guarded(plugins, source, entry_point)
-    for module in modules:
+    for module in dict.fromkeys(modules):
         _load_local(plugins, module)
     plugins.require(_listed("EVOFRAME_PLUGINS_REQUIRE"))
     return plugins
+
+
+def _normalized(distribution: str) -> str:
+    """Return a distribution's name as packaging compares it (PEP 503)."""
+    return re.sub(r"[-_.]+", "-", distribution).lower()
 
 
 def _listed(variable: str) -> list[str]:
@@ -247,12 +280,17 @@ def _import_local(module: str, name: str) -> ModuleType:
     path = Path(module)
     if not path.is_file():
         raise PluginError("there is no such file")
-    spec = importlib.util.spec_from_file_location(name, path)
+    private = f"evoframe_local_{name}"  # so that my random.py does not stand in for Python's
+    spec = importlib.util.spec_from_file_location(private, path)
     if spec is None or spec.loader is None:
         raise PluginError("it is not a Python module")
     loaded = importlib.util.module_from_spec(spec)
-    sys.modules[name] = loaded
-    spec.loader.exec_module(loaded)
+    sys.modules[private] = loaded  # attrs looks modules up while it makes classes
+    try:
+        spec.loader.exec_module(loaded)
+    except BaseException:
+        del sys.modules[private]
+        raise
     return loaded
 
 
@@ -263,20 +301,23 @@ def _check_hooks(manager: pluggy.PluginManager, plugin: object) -> None:
         raise PluginError("it implements no hook; are its functions marked with evoframe.hookimpl?")
     for caller in callers:
         if not caller.has_spec():
-            raise PluginError(f"unknown hook '{caller.name}'{did_you_mean(caller.name, known)}")
+            raise PluginError(f"unknown hook '{caller.name}'{suggestion(caller.name, known)}")
 
 
-def _offers(plugin: object, source: Source) -> Iterator[Offer]:
-    for kind, hook in KINDS.items():
-        function = getattr(plugin, hook, None)
-        if function is None or not hasattr(function, "evoframe_impl"):
-            continue
-        offered = function()
-        if not isinstance(offered, Mapping):
-            raise PluginError(f"{hook} must return a mapping of names to classes, not {offered!r}")
-        for name, component in offered.items():
-            if not (isinstance(name, str) and isinstance(component, type) and attrs.has(component)):
-                raise PluginError(
-                    f"{hook} offers {name!r}: {component!r}, which is no attrs class with a name"
-                )
-            yield Offer(kind, name, component, source)
+def _offers(manager: pluggy.PluginManager, plugin: object, source: Source) -> Iterator[Offer]:
+    for kind, form in KINDS.items():
+        for implementation in getattr(manager.hook, form.hook).get_hookimpls():
+            if implementation.plugin is plugin:
+                yield from _checked(kind, form.hook, implementation.function(), source)
+
+
+def _checked(kind: str, hook: str, offered: Any, source: Source) -> Iterator[Offer]:
+    """Yield what a hook returned, if it is what a hook must return."""
+    if not isinstance(offered, Mapping):
+        raise PluginError(f"{hook} must return a mapping of names to classes, not {offered!r}")
+    for name, component in offered.items():
+        if not (isinstance(name, str) and _COMPONENT_NAME.fullmatch(name)):
+            raise PluginError(f"{hook} offers the name {name!r}; use lower-case letters, digits, - and _")
+        if not (isinstance(component, type) and attrs.has(component)):
+            raise PluginError(f"{hook} offers '{name}': {component!r}, which is no attrs class")
+        yield Offer(kind, name, component, source)

@@ -82,7 +82,13 @@ class Population:
         self._note_champion()
 
     def fittest(self) -> int:
-        """Return the position of the fittest member; a diverged one only if there is no other."""
+        """Return the position of the fittest member; a diverged one only if there is no other.
+
+        Raises:
+            RunError: There are no members yet, or they were not judged.
+        """
+        if not self.members:
+            raise RunError(f"population '{self.name}' has no members before the first turn")
         return max(range(len(self.members)), key=lambda position: (_rank(self.members[position]), -position))
 
     def report(self) -> PopulationReport:
@@ -96,7 +102,7 @@ class Population:
             members=self.members,
             best=fitness[self.fittest()],
             best_so_far=self._best_so_far,
-            champion=_fitness(self._champion),
+            standing_champion=_fitness(self._champion),
             mean=math.fsum(fitness) / len(fitness),
         )
 

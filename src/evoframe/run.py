@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import logging
 import platform
 from collections.abc import Callable
 from pathlib import Path
@@ -16,13 +17,16 @@ from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig, load_config
 from evoframe.evaluation import Evaluator
-from evoframe.layers import Tree
+from evoframe.layers import Tree, layer_of
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.population import Population
 from evoframe.randomness import stream
 from evoframe.store import Store
+from evoframe.values import Turn
+
+_log = logging.getLogger(__name__)
 
 __all__ = ["assemble", "default_directory", "execute", "run"]
 
@@ -56,15 +60,15 @@ def run(
         InputError: The directory is not empty, or cannot be written.
         RunError: The run cannot go on; what was saved stays.
     """
-    if seed is not None:
-        settings["run.seed"] = seed
-    if workers is not None:
-        settings["executor.workers"] = workers
     if isinstance(config, RunConfig):
-        if settings:
-            raise TypeError("settings cannot be changed after load_config; give them to load_config")
+        if settings or seed is not None or workers is not None:
+            raise TypeError("a configuration is complete; give its settings to load_config")
     else:
-        config = load_config(config, tables=_nested(settings), plugins=plugins)
+        named = {**settings, "run.seed": seed, "executor.workers": workers}
+        overrides = [
+            layer_of(f"{key}={value!r}", key, value) for key, value in named.items() if value is not None
+        ]
+        config = load_config(config, overrides=overrides, plugins=plugins)
     directory = Path(out) if out is not None else default_directory(config)
     execute(config, directory)
     return load_run(directory)
@@ -126,10 +130,9 @@ def execute(
     observers = observers or Observers(config.discovered.manager)
     completed = False
     with contextlib.ExitStack() as stack:
+        coevolution = stack.enter_context(assemble(config))
         store = Store(directory, list(config.populations), simulation_tables(config))
         stack.callback(store.close)
-        coevolution = assemble(config)
-        stack.callback(coevolution.close)
         store.save_config(config.to_toml() + _provenance(config))
         observers.tell("evoframe_run_started", config=config, directory=directory)
         try:
@@ -149,28 +152,37 @@ def _play(coevolution: Coevolution, store: Store, observers: Observers, stop: Ca
     for turn in coevolution:
         changed = [report.population for report in turn.reports]
         store.save(turn, coevolution.state(changed))
+        _note(turn)
         observers.tell("evoframe_turn_finished", turn=turn)
         if stop():
             break
-    if coevolution.turn < coevolution.length:
+    if not coevolution.finished:
         return False
     store.finish(_result(coevolution))
     return True
 
 
+def _note(turn: Turn) -> None:
+    if turn.best_pair is not None:
+        _log.info("turn %d: a pair with the score %r", turn.index, turn.best_pair.score)
+    for report in turn.reports:
+        best, mean = report.best, report.mean
+        _log.debug("turn %d: %s: best %r, mean %r", turn.index, report.population, best, mean)
+
+
 def _result(coevolution: Coevolution) -> dict[str, Any]:
-    """Return the final figures: the fittest of each population, and the displacement of that pair."""
+    """Return the final figures: the fittest of each population, and the score of that pair."""
     pair = coevolution.fittest_pair()
     names = [population.name for population in coevolution.populations]
     members = [population.members[population.fittest()] for population in coevolution.populations]
     return {
         "turns": coevolution.turn,
-        "best_pair_displacement": coevolution.best_score,
+        "best_pair_score": coevolution.best_score,
         "fittest": {
-            name: {"genome": member.id, "fitness": member.fitness}
+            name: {"genome_id": member.id, "fitness": member.fitness}
             for name, member in zip(names, members, strict=True)
         },
-        "fittest_pair_displacement": pair.score,
+        "fittest_pair_score": pair.score,
     }
 
 
@@ -181,7 +193,7 @@ def _provenance(config: RunConfig) -> str:
     for chosen in components.values():
         if hasattr(chosen.component, "provenance"):
             libraries |= chosen.component.provenance()
-    vectors = np.show_config(mode="dicts")["SIMD Extensions"]
+    vectors = np.show_config(mode="dicts").get("SIMD Extensions", {})
     table = {
         "evoframe": __version__,
         "machine": platform.machine(),
@@ -190,14 +202,3 @@ def _provenance(config: RunConfig) -> str:
         "components": {key: str(chosen.source) for key, chosen in components.items()},
     }
     return "\n" + tomli_w.dumps({"provenance": table})
-
-
-def _nested(settings: dict[str, Any]) -> Tree:
-    tree: Tree = {}
-    for dotted, value in settings.items():
-        *folders, key = dotted.split(".")
-        table = tree
-        for folder in folders:
-            table = table.setdefault(folder, {})
-        table[key] = value
-    return tree

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import math
 import os
 import sqlite3
 import tempfile
@@ -14,11 +15,20 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from evoframe.errors import InputError, RunError
 from evoframe.values import BestPair, Design, Pair, PopulationReport, Turn
 
-__all__ = ["FORMAT", "Store", "design_from_json", "design_to_json", "read_champion", "write_json"]
+__all__ = [
+    "FORMAT",
+    "Store",
+    "champion_from_json",
+    "design_from_json",
+    "design_to_json",
+    "read_champion",
+    "write_json",
+]
 
 _log = logging.getLogger(__name__)
 
@@ -27,15 +37,17 @@ FORMAT = 1
 
 _SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
 
+_CHAMPION_KEYS = {"format", "score", "simulation", "design"}
+
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE turns (
     turn INTEGER, population TEXT, generation INTEGER NOT NULL,
-    best REAL NOT NULL, best_so_far REAL NOT NULL, champion REAL NOT NULL, mean REAL NOT NULL,
+    best REAL NOT NULL, best_so_far REAL NOT NULL, standing_champion REAL NOT NULL, mean REAL NOT NULL,
     PRIMARY KEY (turn, population)
 ) WITHOUT ROWID;
 CREATE TABLE individuals (
-    turn INTEGER, population TEXT, position INTEGER, genome INTEGER NOT NULL, species INTEGER,
+    turn INTEGER, population TEXT, position INTEGER, genome_id INTEGER NOT NULL, species INTEGER,
     genome_size INTEGER NOT NULL, age INTEGER NOT NULL, fitness REAL NOT NULL, diverged INTEGER NOT NULL,
     PRIMARY KEY (turn, population, position)
 ) WITHOUT ROWID;
@@ -43,7 +55,7 @@ CREATE TABLE pairs (
     turn INTEGER, pair INTEGER, {roles}, score REAL, diverged_at INTEGER,
     PRIMARY KEY (turn, pair)
 ) WITHOUT ROWID;
-CREATE TABLE champions (turn INTEGER PRIMARY KEY, score REAL NOT NULL, champion TEXT NOT NULL);
+CREATE TABLE best_pairs (turn INTEGER PRIMARY KEY, score REAL NOT NULL, document TEXT NOT NULL);
 CREATE TABLE state (part TEXT PRIMARY KEY, turn INTEGER NOT NULL, state TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE workload (
     turn INTEGER PRIMARY KEY, pairs INTEGER NOT NULL, simulations INTEGER NOT NULL, seconds REAL NOT NULL
@@ -96,7 +108,7 @@ class Store:
             work = turn.workload
             self._insert("workload", [(turn.index, work.pairs, work.simulations, work.seconds)])
             if champion:
-                self._insert("champions", [(turn.index, champion["displacement"], _json(champion))])
+                self._insert("best_pairs", [(turn.index, champion["score"], _json(champion))])
             for part, values in state.items():
                 row = (part, turn.index, _json(values))
                 self._database.execute("INSERT OR REPLACE INTO state VALUES (?, ?, ?)", row)
@@ -147,7 +159,7 @@ def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str
     """Return all that is needed to simulate the champion again, and nothing of this machine, as JSON."""
     return {
         "format": FORMAT,
-        "displacement": pair.score,
+        "score": pair.score,
         "turn": pair.turn,
         "genome_ids": dict(pair.genome_ids),
         "simulation": simulation,
@@ -164,44 +176,53 @@ def design_to_json(design: Design) -> dict[str, Any]:
     }
 
 
-def design_from_json(document: Any, origin: str) -> Design:
+def design_from_json(document: Any) -> Design:
     """Return the design that :func:`design_to_json` described.
 
     Raises:
-        InputError: It is not such a document; the message begins with *origin*.
+        ValueError: It is not such a document.
     """
+    if not isinstance(document, dict):
+        raise ValueError("expected a table of roles")  # noqa: TRY004 - it is a bad document
+    return Design({role: _array_from_json(role, given) for role, given in document.items()})
+
+
+def champion_from_json(text: str) -> tuple[Design, dict[str, Any], float]:
+    """Return the design of a champion, the tables that it was simulated with, and its score.
+
+    Raises:
+        ValueError: The text is not JSON, or no champion; says why.
+    """
+    document = _parsed(text)
+    if not isinstance(document, dict) or not document.keys() >= _CHAMPION_KEYS:
+        raise ValueError("this JSON is no champion of evoframe; expected a run's champion.json")
+    if document["format"] is True or document["format"] != FORMAT:
+        raise ValueError(f"format {document['format']!r}, but this evoframe reads format {FORMAT}")
+    if not isinstance(document["score"], float) or not math.isfinite(document["score"]):
+        raise ValueError(f"score: expected a number, found {document['score']!r}")
+    if not isinstance(document["simulation"], dict):
+        raise ValueError(  # noqa: TRY004 - it is a bad document
+            f"simulation: expected a table, found {document['simulation']!r}"
+        )
     try:
-        roles = {
-            str(role): np.array(given["values"], dtype=_dtype(given["dtype"])).reshape(given["shape"])
-            for role, given in document.items()
-        }
-    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
-        raise InputError(f"{origin}: design: not as evoframe writes it: {error}") from error
-    return Design(roles)
+        design = design_from_json(document["design"])
+    except (KeyError, OverflowError, TypeError, ValueError) as error:
+        raise ValueError(f"design: not as evoframe writes it: {error}") from error
+    return design, document["simulation"], document["score"]
 
 
 def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
-    """Return the design of a ``champion.json``, what it was simulated with, and its displacement.
+    """Return what :func:`champion_from_json` finds in a ``champion.json``.
 
     Raises:
         InputError: The file cannot be read, or is no champion.
     """
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        return champion_from_json(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not valid JSON: {error}") from error
-    if (
-        not isinstance(document, dict)
-        or not {"format", "design", "simulation", "displacement"} <= document.keys()
-    ):
-        raise InputError(f"{path}: this JSON is no champion of evoframe; expected a run's champion.json")
-    if document["format"] != FORMAT:
-        raise InputError(f"{path}: format {document['format']}, but this evoframe reads format {FORMAT}")
-    if not isinstance(document["displacement"], float) or not isinstance(document["simulation"], dict):
-        raise InputError(f"{path}: displacement or simulation: not as evoframe writes it")
-    return design_from_json(document["design"], str(path)), document["simulation"], document["displacement"]
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
 
 
 def write_json(path: Path, document: Any) -> None:
@@ -209,11 +230,25 @@ def write_json(path: Path, document: Any) -> None:
     _write_atomically(path, _json(document) + "\n")
 
 
-def _dtype(name: Any) -> type[np.generic]:
+def _parsed(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"not valid JSON: {error}") from error
+
+
+def _array_from_json(role: str, given: Any) -> NDArray[Any]:
+    """Return an array, exactly as it is written: nothing is rounded, wrapped or guessed."""
     types: dict[Any, type[np.generic]] = {"uint8": np.uint8, "int64": np.int64, "float64": np.float64}
-    if name not in types:
-        raise ValueError(f"unknown dtype {name!r}")
-    return types[name]
+    dtype, shape, values = given["dtype"], given["shape"], given["values"]
+    if dtype not in types:
+        raise ValueError(f"{role}: unknown dtype {dtype!r}")
+    kind = float if dtype == "float64" else int
+    if not all(type(value) is kind for value in values):
+        raise ValueError(f"{role}: expected values of type {dtype}")
+    if not all(type(length) is int and length >= 0 for length in shape):
+        raise ValueError(f"{role}: expected the lengths of axes, found the shape {shape}")
+    return np.array(values, dtype=types[dtype]).reshape(shape)
 
 
 def _json(value: Any) -> str:
@@ -263,7 +298,7 @@ def _turn_row(turn: int, report: PopulationReport) -> tuple[Any, ...]:
         report.generation,
         report.best,
         report.best_so_far,
-        report.champion,
+        report.standing_champion,
         report.mean,
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import math
+import numbers
 import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Literal, TypeVar, get_args, get_origin
@@ -19,7 +20,7 @@ from cattrs import (
 )
 from cattrs.gen import make_dict_structure_fn, override
 
-from evoframe.plugins import did_you_mean
+from evoframe.plugins import suggestion
 
 __all__ = ["Fault", "StructureError", "structure", "unstructure"]
 
@@ -109,13 +110,13 @@ def _bool(value: Any, _: Any) -> bool:
 
 
 def _int(value: Any, _: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, int):
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise TypeError(f"expected a whole number, found {found(value)}")
-    return value
+    return int(value)
 
 
 def _float(value: Any, _: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"expected a number, found {found(value)}")
     if not math.isfinite(value):
         raise ValueError(f"expected a finite number, found {value}")
@@ -217,8 +218,7 @@ def _faults(error: BaseException, path: Path) -> Iterator[Fault]:
 
 def _unknown_key(key: str, class_: type[Any]) -> str:
     options = [field.name for field in attrs.fields(class_) if field.init]
-    hint = did_you_mean(key, options)
-    return f"unknown option{hint}{'' if hint else ';'} options: {', '.join(options) or 'none'}"
+    return f"unknown option{suggestion(key, options, 'options')}"
 
 
 _VALIDATOR = re.compile(r"'\w+' (must .*): (.*)", re.DOTALL)

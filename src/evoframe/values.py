@@ -157,8 +157,8 @@ class PopulationReport:
         members: All its members, with the fitness of this turn.
         best: The best fitness of this turn.
         best_so_far: The best fitness of this turn and all before it.
-        champion: Fitness of the standing champion at its latest evaluation (it falls when the champion meets
-            new collaborators, and stands still when the champion has left the population).
+        standing_champion: Fitness of the standing champion at its latest evaluation (it falls when the
+            champion meets new collaborators, and stands still when it has left the population).
         mean: The mean fitness of this turn.
     """
 
@@ -167,7 +167,7 @@ class PopulationReport:
     members: tuple[Member, ...]
     best: float
     best_so_far: float
-    champion: float
+    standing_champion: float
     mean: float
 
 
@@ -192,7 +192,8 @@ class Turn:
 
     Attributes:
         index: 0 for the initial meeting of everyone with everyone, then 1, 2, ...
-        reports: One for each population that was evaluated: all of them in turn 0, later one.
+        reports: One for each population that was judged: all of them in turn 0, later one; none in the
+            closing meeting of the fittest, where there is one.
         pairs: Every pair that was scored, in the order of evaluation.
         best_pair: The best pair so far, if this turn found it.
         workload: What the turn cost.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import pty
 import re
 import signal
 import subprocess
@@ -13,10 +15,27 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import toys
 
 import evoframe as package
 
 Evoframe = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def on_a_terminal(arguments: list[str], directory: Path) -> str:
+    """Return all that a person at a terminal of 80 columns is sent."""
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.chdir(directory)
+        os.environ.update(TERM="xterm-256color", COLUMNS="80", LINES="24")
+        command = [sys.executable, "-m", "evoframe", *arguments]
+        os.execv(sys.executable, command)  # noqa: S606 - the program under test
+    shown = b""
+    with contextlib.suppress(OSError):  # what a terminal reads once its program has ended
+        while part := os.read(terminal, 65536):
+            shown += part
+    assert os.waitpid(pid, 0)[1] == 0, shown
+    return shown.decode()
 
 
 def test_says_its_version(evoframe: Evoframe) -> None:
@@ -114,7 +133,7 @@ class TestRun:
         ran = evoframe("run", "quick", "--seed", 4)
         assert ran.returncode == 0
         champion = package.load_run(tmp_path / "runs" / "quick-4").champion
-        assert repr(champion.displacement) in ran.stdout
+        assert repr(champion.score) in ran.stdout
         assert "runs/quick-4" in ran.stdout
         assert re.search(r"turn 10/10 .* morphology \S+ .* controller \S+ .* sim/s .*% cached", ran.stderr)
 
@@ -135,6 +154,53 @@ class TestRun:
             again.stderr.splitlines()[-1] == "Error: here: is not empty; choose another directory with --out"
         )
         assert (tmp_path / "here" / "run.db").read_bytes() == before
+
+    def test_verbose_tells_of_better_pairs_and_doubly_verbose_of_every_turn(self, evoframe: Evoframe) -> None:
+        def told(*flags: str) -> str:
+            return evoframe(*flags, "run", "quick", "--set", "run.generations=2").stderr
+
+        assert "a pair with the score" not in told()
+        assert "turn 0: a pair with the score" in told("-v")
+        assert "turn 4: controller: best" not in told("-v")
+        assert "turn 4: controller: best" in told("-vv")
+
+    def test_the_summary_counts_the_pairs_that_diverged(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        ran = evoframe(
+            "-p", toys.__file__, "run", "toy.toml", "--set", "simulator.limit=0.15", "--out", "here"
+        )
+        assert ran.returncode == 0, ran.stderr
+        pairs = package.load_run(tmp_path / "here").pairs
+        diverged = sum(pair["score"] is None for pair in pairs)
+        assert diverged > 0
+        assert f"simulated and {diverged} diverged" in ran.stdout
+
+    def test_on_a_terminal_there_is_a_bar_that_is_taken_away_at_the_end(self, tmp_path: Path) -> None:
+        shown = on_a_terminal(["run", "quick", "--set", "run.generations=10"], tmp_path)
+        assert re.search(r"turn \d+/20 .*0:00:\d\d\S* left", shown)
+        assert re.search(r"morphology \S+  controller \S+  \d+ sim/s  \d+% cached", shown)
+        assert (
+            shown.count("\x1b[?25l") == shown.count("\x1b[?25h") > 0
+        )  # the cursor is hidden, and comes back
+
+    def test_a_second_interrupt_stops_at_once_and_keeps_what_is_saved(self, tmp_path: Path) -> None:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "evoframe", "run", "--workers", "1", "--out", "here"],
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        while not (tmp_path / "here" / "run.db").exists():
+            time.sleep(0.02)
+        time.sleep(0.3)  # within the initial meeting, which takes a second or more
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        assert process.returncode == 130
+        assert "Traceback" not in errors
+        assert "press Ctrl-C again to stop at once" in errors
+        assert len(package.load_run(tmp_path / "here").turns) in (0, 2)
 
     def test_interrupt_stops_after_the_turn_and_keeps_it(self, tmp_path: Path) -> None:
         process = subprocess.Popen(
@@ -192,7 +258,10 @@ def test_a_users_mistake_is_one_clear_message_and_leaves_nothing(
 
 
 def test_python_m_and_the_script_are_the_same() -> None:
-    script = Path(sys.executable).with_name("evoframe")
-    assert subprocess.run(
-        [script, "--version"], capture_output=True, text=True, check=True
-    ).stdout.startswith("evoframe")
+    commands = [str(Path(sys.executable).with_name("evoframe"))], [sys.executable, "-m", "evoframe"]
+    helps = [
+        subprocess.run([*command, "run", "--help"], capture_output=True, text=True, check=True).stdout
+        for command in commands
+    ]
+    assert helps[0] == helps[1]
+    assert "evoframe run" in helps[0]

@@ -11,6 +11,7 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+import toys
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -137,19 +138,135 @@ def test_a_restored_loop_continues_bit_for_bit(toy_config: Load, at: int) -> Non
     assert second.best_score == max(pair[2][i].score for pair in whole for i in range(len(pair[2])))
 
 
-def test_more_than_two_populations_are_combined_position_by_position(toy_config: Load) -> None:
-    config = toy_config(
-        'populations.c.encoder={name="toy-number", role="c"}',
-        "populations.c.evolver=toy-drift",
-        "populations.c.size=5",
-    )
-    turns = list(assemble(config))
-    assert len(turns) == 1 + 4 * 3
-    assert all(len(pair.genomes) == 3 for turn in turns for pair in turn.pairs)
-    for turn in turns[1:]:
-        column = ["a", "b", "c"].index(turn.reports[0].population)
-        teams = {pair.genomes[:column] + pair.genomes[column + 1 :] for pair in turn.pairs}
-        assert len(teams) == 2  # not 2 x 2: the i-th collaborator of one with the i-th of the other
+class TestMoreThanTwoPopulations:
+    @pytest.fixture
+    def turns(self, toy_config: Load) -> list[Turn]:
+        third = ('populations.c.encoder={name="toy-number", role="c"}', "populations.c.evolver=toy-drift")
+        return list(assemble(toy_config(*third, "populations.c.size=4")))
+
+    def test_take_turns_in_order(self, turns: list[Turn]) -> None:
+        assert [turn.reports[0].population for turn in turns[1:13]] == ["a", "b", "c"] * 4
+
+    def test_are_combined_position_by_position(self, turns: list[Turn]) -> None:
+        for turn in turns[1:13]:
+            column = "abc".index(turn.reports[0].population)
+            teams = {pair.genomes[:column] + pair.genomes[column + 1 :] for pair in turn.pairs}
+            assert len(teams) == 2  # not 2 x 2: the i-th collaborator of one with the i-th of the other
+
+    def test_first_everyone_meets_every_member_of_every_other_one(self, turns: list[Turn]) -> None:
+        sizes = (6, 5, 4)
+        for one, size in enumerate(sizes):
+            for other, partners in enumerate(sizes):
+                met = {(pair.genomes[one], pair.genomes[other]) for pair in turns[0].pairs}
+                assert one == other or len(met) == size * partners
+
+    def test_fitness_follows_from_the_scores_of_all_pairs_of_a_turn(self, turns: list[Turn]) -> None:
+        for turn in turns:
+            for report in turn.reports:
+                column = "abc".index(report.population)
+                for member in report.members:
+                    scores = [pair.score for pair in turn.pairs if pair.genomes[column] == member.id]
+                    assert member.fitness == pytest.approx(statistics.fmean(scores), rel=1e-12)
+
+
+class TestClosingMeeting:
+    def test_lets_the_fittest_meet_who_have_not(self, toy_config: Load) -> None:
+        coevolution = assemble(toy_config("collaboration={name='toy-last'}"))
+        turns = list(coevolution)
+        closing = turns[-1]
+        assert (closing.index, closing.reports) == (9, ())
+        fittest = tuple(p.members[p.fittest()].id for p in coevolution.populations)
+        assert [pair.genomes for pair in closing.pairs] == [fittest]
+        assert coevolution.finished
+        assert coevolution.fittest_pair() == closing.pairs[0]
+
+    def test_is_one_of_the_pairs_among_which_the_best_is(self, toy_config: Load) -> None:
+        better = 0
+        for seed in range(20):
+            coevolution = assemble(toy_config("collaboration={name='toy-last'}", f"run.seed={seed}"))
+            turns = list(coevolution)
+            assert coevolution.best_score == max(pair.score for turn in turns for pair in turn.pairs)
+            better += turns[-1].best_pair is not None
+        assert better > 0
+
+    def test_does_not_take_place_when_they_have_met(self, toy_config: Load) -> None:
+        coevolution = assemble(toy_config())
+        assert len(list(coevolution)) == coevolution.length + 1
+        assert coevolution.finished
+
+    def test_takes_place_once_after_a_restart_too(self, toy_config: Load) -> None:
+        config = toy_config("collaboration={name='toy-last'}")
+        whole = history(assemble(config))
+        first = assemble(config)
+        for turn in first:
+            if turn.index == first.length:
+                break
+        second = assemble(config)
+        second.restore(json.loads(json.dumps(first.state())))
+        assert not second.finished
+        assert history(second) == whole[-1:]
+        third = assemble(config)
+        third.restore(json.loads(json.dumps(second.state())))
+        assert history(third) == []
+
+
+class TestRandomStreams:
+    def genomes(self, config: RunConfig) -> dict[str, Any]:
+        coevolution = assemble(config)
+        next(iter(coevolution))
+        return {population.name: list(population.genomes) for population in coevolution.populations}
+
+    def test_each_population_has_its_own(self, toy_config: Load) -> None:
+        genomes = self.genomes(toy_config("populations.a.size=5"))
+        assert genomes["a"] != genomes["b"]
+
+    def test_they_belong_to_names_so_another_population_changes_none(self, toy_config: Load) -> None:
+        two = self.genomes(toy_config())
+        third = ('populations.c.encoder={name="toy-number", role="c"}', "populations.c.evolver=toy-drift")
+        three = self.genomes(toy_config(*third))
+        assert {name: three[name] for name in two} == two
+        assert three["c"][:5] not in (two["a"][:5], two["b"])
+
+    def test_collaborators_are_drawn_from_the_stream_of_the_population_that_they_judge(
+        self, toy_config: Load
+    ) -> None:
+        coevolution = assemble(toy_config("collaboration={name='toy-drawn'}"))
+        turns = iter(coevolution)
+        next(turns)
+        states = [population.rng.bit_generator.state for population in coevolution.populations]
+        assert states[0] != states[1]
+        next(turns)
+        assert coevolution.populations[0].rng.bit_generator.state != states[0]
+        assert coevolution.populations[1].rng.bit_generator.state == states[1]
+
+
+class TestBadComponents:
+    """Those of other people; that they are the core's own is another matter."""
+
+    @pytest.mark.parametrize("chosen", [[0, 0], [0, 99], [-1], [0.5]])
+    def test_a_strategy_that_chooses_what_is_not_there_is_named(
+        self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, chosen: list[Any]
+    ) -> None:
+        monkeypatch.setattr(toys.First, "select", lambda self, members, rng: chosen)
+        with pytest.raises(
+            RunError, match=r"the collaboration strategy First chose \[.* of the 5 members of 'b'"
+        ):
+            list(assemble(toy_config()))
+
+    @pytest.mark.parametrize("fitness", ["abc", None, float("nan"), float("inf")])
+    def test_an_aggregator_that_gives_no_number_is_named(
+        self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, fitness: Any
+    ) -> None:
+        monkeypatch.setattr(toys.Mean, "aggregate", lambda self, scores: fitness)
+        with pytest.raises(RunError, match="the aggregator gave the fitness"):
+            list(assemble(toy_config()))
+
+    def test_a_simulator_that_loses_an_outcome_is_named(
+        self, toy_config: Load, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(toys.Product, "simulate", lambda self, designs, record: [])
+        with pytest.raises(RunError, match="the simulator returned 0 outcomes for"):
+            list(assemble(toy_config()))
 
 
 class TestDivergence:
@@ -176,10 +293,21 @@ class TestDivergence:
         self, toy_config: Load
     ) -> None:
         coevolution = assemble(toy_config("simulator.limit=0.15", "run.generations=20"))
-        for _ in coevolution:
+        others: dict[str, Any] = {}
+        chosen = 0
+        for turn in coevolution:
+            if turn.index > 0 and turn.reports:
+                [report] = turn.reports
+                column = "ab".index(report.population)
+                clean = [m.id for m in others["ba"[column]].members if not m.diverged]
+                met = {pair.genomes[1 - column] for pair in turn.pairs}
+                assert met <= set(clean) or len(clean) < 2
+                chosen += 1
+            others |= {report.population: report for report in turn.reports}
             for population in coevolution.populations:
                 if any(not member.diverged for member in population.members):
                     assert not population.members[population.fittest()].diverged
+        assert chosen == 40
 
     def test_a_run_of_which_nothing_is_clean_says_so(self, toy_config: Load) -> None:
         with pytest.raises(RunError, match="every simulation of the initial meeting diverged"):
@@ -214,29 +342,39 @@ def population() -> Population:
 
 class TestChampion:
     def test_falls_when_it_meets_new_collaborators(self, population: Population) -> None:
-        assert judged(population, [1, 2], [5.0, 1.0]).champion == 5.0
-        assert judged(population, [1, 3], [2.0, 1.0]).champion == 2.0
+        assert judged(population, [1, 2], [5.0, 1.0]).standing_champion == 5.0
+        assert judged(population, [1, 3], [2.0, 1.0]).standing_champion == 2.0
 
     def test_is_replaced_by_who_beats_its_latest_fitness(self, population: Population) -> None:
         judged(population, [1, 2], [5.0, 1.0])
         report = judged(population, [1, 3], [2.0, 3.0])
-        assert (report.champion, report.best, report.best_so_far) == (3.0, 3.0, 5.0)
+        assert (report.standing_champion, report.best, report.best_so_far) == (3.0, 3.0, 5.0)
 
     def test_stands_still_when_it_has_left_the_population(self, population: Population) -> None:
         judged(population, [1, 2], [5.0, 1.0])
-        assert judged(population, [3, 4], [2.0, 3.0]).champion == 5.0
+        assert judged(population, [3, 4], [2.0, 3.0]).standing_champion == 5.0
 
     def test_a_diverged_champion_gives_way_to_a_clean_one(self, population: Population) -> None:
         judged(population, [1, 2], [5.0, 1.0])
         report = judged(population, [1, 2], [None, 0.5])
-        assert (report.champion, report.members[0].fitness) == (0.5, 0.5)
+        assert (report.standing_champion, report.members[0].fitness) == (0.5, 0.5)
 
     def test_without_a_clean_one_the_lowest_that_the_population_has_had_counts(
         self, population: Population
     ) -> None:
         judged(population, [1, 2], [5.0, -1.0])
+        judged(population, [1, 2], [3.0, 2.0])
         report = judged(population, [1, 2], [None, None])
         assert [member.fitness for member in report.members] == [-1.0, -1.0]
+
+    def test_before_there_was_one_the_lowest_score_of_the_turn_counts(self, population: Population) -> None:
+        population.evolver.ids = [1, 2]  # type: ignore[attr-defined]
+        population.judge([None, None], floor=0.25)
+        assert [member.fitness for member in population.report().members] == [0.25, 0.25]
+
+    def test_nobody_is_the_fittest_before_anybody_was_judged(self, population: Population) -> None:
+        with pytest.raises(RunError, match="population 'a' has no members before the first turn"):
+            population.fittest()
 
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=20))

@@ -151,13 +151,19 @@ FAULTS = [
     ("run=4", "run: expected a table, found 4"),
     ("agregator=toy-mean", "agregator: unknown key; did you mean 'aggregator'?"),
     ("populations.a.size=1", "populations.a.size: must be >= 2, found 1"),
-    ("populations.a.size=101", "populations.a.size: toy-drift takes at most 100 members, not 101"),
+    ("populations.a.size=101", "populations.a: toy-drift takes at most 100 members, not 101"),
     ("populations.a.evolver=neat", "populations.a.evolver: unknown evolver 'neat'; installed: toy-drift"),
     ("populations.a.encoder.role=z", "populations.b.encoder: needs the role 'a' from a population before it"),
     ("populations.b.encoder.role=a", "populations.b.encoder: provides the role 'a', which another"),
     ("populations.b.encoder.needs=a", 'populations.b.encoder.needs: expected a list, found "a"'),
     ("populations.b.encoder.needs=[1]", "populations.b.encoder.needs[0]: expected a string, found 1"),
-    ("populations.turn=4", "populations.turn: 'turn' is no name for a population"),
+    ("populations.turn=4", "populations.turn: 'turn' is a column of the database; choose another name"),
+    ("populations.A=4", "populations.A: 'A': use lower-case letters, digits, - and _"),
+    ("extends=quick", "extends: can only be set in a file"),
+    (
+        'plugins.require=["nobody"]',
+        "plugins.require: required plugin 'nobody' is not installed; found: toy-box",
+    ),
     ("plugins.block=toy", 'plugins.block: expected a list, found "toy"'),
 ]
 
@@ -185,7 +191,9 @@ class TestFaults:
         toy_file.write_text(toy_file.read_text().replace("n = 2", "n = 30"))
         with pytest.raises(ConfigurationError) as caught:
             toy_config()
-        assert str(caught.value) == f"{toy_file}: collaboration: 30 collaborators of 6 members"
+        assert (
+            str(caught.value) == f"{toy_file}: collaboration: 30 collaborators of 6 members (population 'a')"
+        )
 
     def test_a_file_that_is_no_toml_says_where(self, toy_config: Load, toy_file: Path) -> None:
         toy_file.write_text("[run\nseed = 1")
@@ -193,6 +201,25 @@ class TestFaults:
             toy_config()
         toy_file.write_bytes(b"\xff\xfe")
         with pytest.raises(ConfigurationError, match="not UTF-8"):
+            toy_config()
+
+    @pytest.mark.parametrize(
+        "text",
+        [
+            "x = " + "[" * 5000,
+            "x = " + "1" * 5000,
+            'extends = "a\\u0000.toml"',
+            'extends = ""',
+            "extends = 3",
+            'extends = "."',
+        ],
+        ids=lambda text: text[:20],
+    )
+    def test_a_file_that_is_out_of_all_bounds_is_refused(
+        self, toy_config: Load, toy_file: Path, text: str
+    ) -> None:
+        toy_file.write_text(text)
+        with pytest.raises(ConfigurationError):
             toy_config()
 
     def test_a_missing_file_is_named(self, tmp_path: Path, toy_plugins: Plugins) -> None:

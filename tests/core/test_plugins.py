@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import sys
 import types
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import pytest
 import toys
 
-from evoframe import ConfigurationError, PluginError, PluginWarning, hookimpl
+from evoframe import ConfigurationError, PluginError, PluginWarning, RunConfig, hookimpl
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins, Source, discover
 
@@ -54,6 +56,11 @@ class TestRegistry:
             ),
             ({"evoframe_aggregators": lambda: [toys.Mean]}, "must return a mapping of names to classes"),
             ({"evoframe_aggregators": lambda: {"x": 3}}, "offers 'x': 3, which is no attrs class"),
+            (
+                {"evoframe_aggregators": lambda: {"a:b": toys.Mean}},
+                "offers the name 'a:b'; use lower-case letters",
+            ),
+            ({"evoframe_aggregators": lambda: {"": toys.Mean}}, "offers the name ''; use lower-case letters"),
             ({"evoframe_turn_finished": lambda trun: None}, "trun"),
             ({}, "implements no hook"),
         ],
@@ -68,9 +75,60 @@ class TestRegistry:
         assert toy_plugins.offers == before
         assert not toy_plugins.manager.is_registered(bad)
 
+    def test_a_function_of_another_name_may_implement_a_hook(self, toy_plugins: Plugins) -> None:
+        module = types.ModuleType("plugin")
+        module.offer = hookimpl(specname="evoframe_aggregators")(lambda: {"mine": toys.Mean})  # type: ignore[attr-defined]
+        toy_plugins.add(module, HERE)
+        assert toy_plugins.find("aggregator", "mine").source == HERE
+
+    def test_the_same_plugin_twice_is_refused_in_a_sentence(self, toy_plugins: Plugins) -> None:
+        with pytest.raises(PluginError, match=r"^there is a plugin of that name already$"):
+            toy_plugins.add(toys, Source("toy-box", "1.0", "toys"))
+
+    def test_names_of_distributions_are_compared_as_packaging_does(self, toy_plugins: Plugins) -> None:
+        toy_plugins.require(["Toy_Box"])
+        assert toy_plugins.find("aggregator", "TOY.BOX:toy-mean").component is toys.Mean
+        assert toy_plugins.without(["toy.box"]).names("aggregator") == []
+
     def test_blocked_distributions_are_left_out(self, toy_plugins: Plugins) -> None:
         assert toy_plugins.without(["toy-box"]).names("aggregator") == []
         assert toy_plugins.without(["other"]).names("aggregator") == ["toy-mean"]
+
+
+@attrs.define
+class Changeable:
+    domain = (-1e100, 1e100)
+
+    def check(self, n: int) -> None:
+        pass
+
+    def aggregate(self, scores: Any) -> float:
+        return 0.0
+
+
+@attrs.frozen
+class Unfinished:
+    domain = (-1e100, 1e100)
+
+    def aggregate(self, scores: Any) -> float:
+        return 0.0
+
+
+class TestComponentsOfOthers:
+    @pytest.mark.parametrize(
+        ("component", "message"),
+        [
+            (Changeable, "aggregator 'mine' of plugin 'main' of here 1.0 is no frozen attrs class"),
+            (Unfinished, "aggregator 'mine' of plugin 'main' of here 1.0 has no check"),
+        ],
+    )
+    def test_are_held_to_their_protocol_when_they_are_chosen(
+        self, toy_plugins: Plugins, toy_config: Callable[..., RunConfig], component: type[Any], message: str
+    ) -> None:
+        toy_plugins.add(plugin(evoframe_aggregators=lambda: {"mine": component}), HERE)
+        toy_config()  # as long as nobody asks for it, all is well
+        with pytest.raises(ConfigurationError, match=f"--set aggregator=mine: aggregator: {message}"):
+            toy_config("aggregator=mine")
 
 
 class TestLocalModules:
@@ -113,6 +171,12 @@ def evoframe_aggregators():
         with pytest.raises(PluginError, match=cause):
             discover([str(path)])
 
+    def test_one_with_the_name_of_a_module_of_python_replaces_it_for_nobody(self, tmp_path: Path) -> None:
+        path = tmp_path / "random.py"
+        path.write_text(self.MODULE)
+        assert "highest" in discover([str(path), str(path)]).names("aggregator")
+        assert hasattr(sys.modules["random"], "SystemRandom")
+
     def test_one_that_does_not_exist_is_an_error(self) -> None:
         with pytest.raises(PluginError, match="no such file"):
             discover(["nowhere.py"])
@@ -121,19 +185,20 @@ def evoframe_aggregators():
 
 
 class TestObservers:
-    def test_each_is_told_and_one_that_raises_is_disabled_with_a_warning(self) -> None:
+    @pytest.mark.parametrize("error", [RuntimeError("no disk"), SystemExit("no disk")])
+    def test_each_is_told_and_one_that_raises_is_disabled_with_a_warning(self, error: BaseException) -> None:
         told: list[str] = []
 
         def fails(turn: Any) -> None:
             told.append("fails")
-            raise RuntimeError("no disk")
+            raise error
 
         plugins = Plugins()
         plugins.add(plugin(evoframe_turn_finished=lambda turn: told.append("first")), Source("a", "1", "x"))
         plugins.add(plugin(evoframe_turn_finished=fails), Source("b", "1", "x"))
         plugins.add(plugin(evoframe_turn_finished=lambda: told.append("last")), Source("c", "1", "x"))
         observers = Observers(plugins.manager)
-        with pytest.warns(PluginWarning, match="observer 'b:x' is disabled: RuntimeError: no disk"):
+        with pytest.warns(PluginWarning, match="observer 'b:x' is disabled: .*: no disk"):
             observers.tell("evoframe_turn_finished", turn=None)
         assert sorted(told) == ["fails", "first", "last"]
         observers.tell("evoframe_turn_finished", turn=None)

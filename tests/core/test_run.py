@@ -11,10 +11,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import toys
 
-from evoframe import InputError, PluginWarning, RunConfig, Turn, hookimpl, load_run, run
+import evoframe.store
+from evoframe import ConfigurationError, InputError, PluginWarning, RunConfig, Turn, hookimpl, load_run, run
 from evoframe.plugins import Plugins, Source
 from evoframe.run import default_directory, execute
 from evoframe.store import design_from_json, design_to_json, read_champion
@@ -41,7 +43,7 @@ class TestDirectory:
     ) -> None:
         first = run(toy_config("run.seed=8"), out=tmp_path / "first")
         second = run(first.directory / "config.toml", out=tmp_path / "second", plugins=toy_plugins)
-        for table in ("turns", "individuals", "pairs", "champions", "state", "meta"):
+        for table in ("turns", "individuals", "pairs", "best_pairs", "state", "meta"):
             assert rows(first.directory, table) == rows(second.directory, table)
         assert (first.directory / "champion.json").read_bytes() == (
             second.directory / "champion.json"
@@ -60,15 +62,15 @@ class TestDirectory:
     ) -> None:
         finished = run(toy_config("run.generations=10"), out=tmp_path / "run")
         for individual in finished.individuals:
-            name, genome, turn = individual["population"], individual["genome"], individual["turn"]
+            name, genome, turn = individual["population"], individual["genome_id"], individual["turn"]
             scores = [p["score"] for p in finished.pairs if p["turn"] == turn and p[name] == genome]
             assert individual["fitness"] == pytest.approx(statistics.fmean(scores), rel=1e-12)
 
     def test_the_champion_is_the_best_pair_of_the_database(self, toy_config: Load, tmp_path: Path) -> None:
         finished = run(toy_config("run.generations=10"), out=tmp_path / "run")
         best = max(pair["score"] for pair in finished.pairs)
-        assert finished.champion.displacement == best == finished.summary["best_pair_displacement"]
-        assert finished.table("champions")[-1]["score"] == best
+        assert finished.champion.score == best == finished.summary["best_pair_score"]
+        assert finished.table("best_pairs")[-1]["score"] == best
         roles = finished.champion.design.roles
         assert roles["a"][0] * roles["b"][0] == best
 
@@ -86,7 +88,7 @@ class TestDirectory:
         text = (finished.directory / "champion.json").read_text()
         assert "a-name-to-find" not in text
         assert set(json.loads(text)) == {
-            "format", "displacement", "turn", "genome_ids", "simulation", "design", "genomes",
+            "format", "score", "turn", "genome_ids", "simulation", "design", "genomes",
         }  # fmt: skip
 
     def test_the_provenance_names_versions_and_distributions(self, toy_config: Load, tmp_path: Path) -> None:
@@ -117,6 +119,44 @@ class TestDirectory:
         assert names == ["runs/toy-3", "runs/toy-3-2", "runs/toy-3-3"]
 
 
+def test_a_directory_is_made_only_when_all_components_have_started(
+    toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuses(*_: Any) -> Any:
+        raise ConfigurationError("no")
+
+    monkeypatch.setattr(toys.Drift, "start", refuses)
+    with pytest.raises(ConfigurationError, match="no"):
+        run(toy_config(), out=tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_workers_are_let_go(toy_config: Load, tmp_path: Path) -> None:
+    before = len(toys.CLOSED)
+    run(toy_config(), out=tmp_path / "run")
+    assert len(toys.CLOSED) == before + 1
+
+
+def test_a_kill_between_database_and_champion_file_loses_no_champion(
+    toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = evoframe.store.write_json
+    written: list[None] = []
+
+    def killed(path: Path, document: Any) -> None:
+        written.append(None)
+        if len(written) == 2:
+            raise SystemExit("killed")
+        write(path, document)
+
+    monkeypatch.setattr(evoframe.store, "write_json", killed)
+    with pytest.raises(SystemExit):
+        run(toy_config(), out=tmp_path / "run")
+    killed_run = load_run(tmp_path / "run")
+    assert killed_run.champion.score == max(pair["score"] for pair in killed_run.pairs)
+    assert killed_run.champion.score > read_champion(tmp_path / "run" / "champion.json")[2]
+
+
 class TestPython:
     def test_settings_are_keyword_arguments(
         self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path
@@ -126,11 +166,23 @@ class TestPython:
             seed=5,
             out=tmp_path / "run",
             plugins=toy_plugins,
-            collaboration={"n": 3},
-            **{"run.generations": 1},
+            collaboration="toy-first",
+            **{"run.generations": 1, "collaboration.n": 3},
         )
         assert finished.config["run"] == {"seed": 5, "generations": 1}
         assert finished.config["collaboration"] == {"name": "toy-first", "n": 3}
+
+    def test_numbers_of_numpy_are_numbers(self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path) -> None:
+        seed, limit = np.int64(5), np.float64(2.5)
+        finished = run(
+            toy_file, seed=seed, out=tmp_path / "run", plugins=toy_plugins, simulator={"limit": limit}
+        )
+        assert finished.config["run"]["seed"] == 5
+        assert finished.config["simulator"]["limit"] == 2.5
+
+    def test_a_complete_configuration_takes_no_settings(self, toy_config: Load) -> None:
+        with pytest.raises(TypeError, match="give its settings to load_config"):
+            run(toy_config(), seed=4)
 
     def test_what_is_no_run_is_refused(self, tmp_path: Path) -> None:
         with pytest.raises(InputError, match="is no run's directory"):
@@ -231,13 +283,13 @@ class TestChampionFile:
         return run(toy_config(), out=tmp_path / "run").directory / "champion.json"
 
     def test_is_read_back_exactly(self, champion: Path) -> None:
-        design, simulation, displacement = read_champion(champion)
+        design, simulation, score = read_champion(champion)
         assert simulation == {
             "simulator": {"name": "toy-product", "limit": 1e9},
             "objective": {"name": "toy-value"},
         }
-        assert design.roles["a"][0] * design.roles["b"][0] == displacement
-        again = design_from_json(design_to_json(design), "here")
+        assert design.roles["a"][0] * design.roles["b"][0] == score
+        again = design_from_json(design_to_json(design))
         assert all((again.roles[role] == array).all() for role, array in design.roles.items())
 
     @pytest.mark.parametrize(
@@ -246,14 +298,14 @@ class TestChampionFile:
             (lambda d: [d], "this JSON is no champion"),
             (lambda d: {}, "this JSON is no champion"),
             (lambda d: {**d, "format": 2}, "format 2, but this evoframe reads format 1"),
-            (lambda d: {**d, "displacement": "high"}, "displacement or simulation: not as evoframe"),
+            (lambda d: {**d, "score": "high"}, "score: expected a number, found 'high'"),
             (lambda d: {**d, "design": []}, "design: not as evoframe writes it"),
             (
                 lambda d: {**d, "design": {"a": {"dtype": "object", "shape": [1], "values": [1]}}},
                 "unknown dtype",
             ),
             (
-                lambda d: {**d, "design": {"a": {"dtype": "float64", "shape": [2], "values": [1]}}},
+                lambda d: {**d, "design": {"a": {"dtype": "float64", "shape": [2], "values": [1.0]}}},
                 "cannot reshape",
             ),
             (

@@ -20,7 +20,7 @@ import pytest
 import evoframe
 from evoframe import Run
 
-TABLES = ("turns", "individuals", "pairs", "champions", "state", "meta")
+TABLES = ("turns", "individuals", "pairs", "best_pairs", "state", "meta")
 WEIGHTS = {2: (0.6, 0.4), 3: (0.5, 0.3, 0.2), 5: (0.4, 0.3, 0.15, 0.1, 0.05)}
 
 
@@ -70,7 +70,7 @@ class TestRecord:
                 for row in short.individuals
                 if (row["turn"], row["population"]) == (turn["turn"], turn["population"])
             ]
-            assert len({member["genome"] for member in members}) == 25
+            assert len({member["genome_id"] for member in members}) == 25
 
     @pytest.mark.parametrize("aggregator", MEANS)
     @pytest.mark.parametrize("n", [2, 5])
@@ -88,7 +88,7 @@ class TestRecord:
                 pair["score"]
                 for pair in pairs
                 if pair["turn"] == individual["turn"]
-                and pair[individual["population"]] == individual["genome"]
+                and pair[individual["population"]] == individual["genome_id"]
             ]
             mean = statistics.fmean if individual["turn"] == 0 else MEANS[aggregator]
             assert individual["fitness"] == pytest.approx(mean(scores), rel=1e-12)
@@ -165,7 +165,7 @@ class TestSwaps:
     )
     def test_each_runs(self, settings: dict[str, Any], tmp_path: Path) -> None:
         finished = evoframe.run("quick", out=tmp_path / "run", **{"run.generations": 1, **settings})
-        assert math.isfinite(finished.champion.displacement)
+        assert math.isfinite(finished.champion.score)
 
     def test_a_file_with_weights_runs(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.toml"

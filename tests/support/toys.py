@@ -55,6 +55,29 @@ class First:
 
 
 @attrs.frozen
+class Last:
+    """The least fit one, and nobody else."""
+
+    def size(self, n_members: int) -> int:
+        return 1
+
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> NDArray[np.intp]:
+        del rng
+        return np.array([min(range(len(members)), key=lambda i: members[i].fitness or 0.0)], dtype=np.intp)
+
+
+@attrs.frozen
+class Drawn:
+    """Two that chance chooses."""
+
+    def size(self, n_members: int) -> int:
+        return 2
+
+    def select(self, members: Sequence[Member], rng: np.random.Generator) -> NDArray[np.intp]:
+        return rng.choice(len(members), size=2, replace=False)
+
+
+@attrs.frozen
 class Number:
     role: str = "a"
     needs: tuple[str, ...] = ()
@@ -181,6 +204,10 @@ class Value:
         return float(outcome.tracks["value"][0, 0])
 
 
+CLOSED: list[Any] = []
+"""The executors that were closed."""
+
+
 @attrs.frozen
 class Here:
     workers: ClassVar[int] = 1
@@ -192,7 +219,7 @@ class Here:
         return [function(item) for item in items]
 
     def close(self) -> None:
-        pass
+        CLOSED.append(self)
 
 
 @hookimpl
@@ -202,7 +229,7 @@ def evoframe_aggregators() -> Mapping[str, type[Any]]:
 
 @hookimpl
 def evoframe_strategies() -> Mapping[str, type[Any]]:
-    return {"toy-first": First}
+    return {"toy-first": First, "toy-last": Last, "toy-drawn": Drawn}
 
 
 @hookimpl

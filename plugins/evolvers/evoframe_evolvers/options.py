@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from difflib import get_close_matches
 from importlib.metadata import version
 from typing import Any
 
 import attrs
 from attrs.validators import and_, ge, instance_of, le
 
+from evoframe import suggestion
 from evoframe_evolvers.activations import ACTIVATIONS
 
 __all__ = [
@@ -32,14 +32,9 @@ def finite(_instance: Any, attribute: attrs.Attribute[float], value: float) -> N
 def _known_activations(_instance: Any, attribute: attrs.Attribute[Any], names: tuple[str, ...]) -> None:
     if not names:
         raise ValueError(f"{attribute.name} must name at least one of {', '.join(ACTIVATIONS)}")
-    unknown = [_with_suggestion(name) for name in names if name not in ACTIVATIONS]
-    if unknown:
-        raise ValueError(f"unknown {attribute.name}: {', '.join(unknown)}; known: {', '.join(ACTIVATIONS)}")
-
-
-def _with_suggestion(name: str) -> str:
-    close = get_close_matches(str(name), ACTIVATIONS, n=1)
-    return f"'{name}' (did you mean '{close[0]}'?)" if close else f"'{name}'"
+    for name in names:
+        if name not in ACTIVATIONS:
+            raise ValueError(f"unknown activation '{name}'{suggestion(name, ACTIVATIONS, 'known')}")
 
 
 def probability(default: float) -> Any:

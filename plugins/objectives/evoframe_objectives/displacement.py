@@ -66,7 +66,16 @@ class TipDz(_Displacement):
 
 
 @attrs.frozen
-class TipYz(_Displacement):
+class _DistanceYz(_Displacement):
+    """How far the track moves in the yz plane, in metres; never negative."""
+
+    def score(self, outcome: Outcome) -> float:
+        """Return the distance in the yz plane."""
+        return math.hypot(*self._moved(outcome)[1:])
+
+
+@attrs.frozen
+class TipYz(_DistanceYz):
     """How far the corner voxel of the free end moves in the yz plane, in metres; never negative.
 
     This is the paper's wording, and the authors' first version.
@@ -74,17 +83,9 @@ class TipYz(_Displacement):
 
     track = "tip"
 
-    def score(self, outcome: Outcome) -> float:
-        """Return the distance in the yz plane."""
-        return float(math.hypot(*self._moved(outcome)[1:]))
-
 
 @attrs.frozen
-class FaceYz(_Displacement):
+class FaceYz(_DistanceYz):
     """How far the centre of the free face moves in the yz plane, in metres; never negative."""
 
     track = "face"
-
-    def score(self, outcome: Outcome) -> float:
-        """Return the distance in the yz plane."""
-        return float(math.hypot(*self._moved(outcome)[1:]))

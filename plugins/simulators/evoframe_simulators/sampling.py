@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import Record
 
-__all__ = ["sample_steps"]
+__all__ = ["count_samples", "sample_steps"]
+
+_ROUNDING = 1e-12  # relative; an interval that is a multiple of the time step is met, not missed
+_MOST_STEPS = 2**53  # of any simulation
 
 
 def sample_steps(time_step: float, steps: int, record: Record) -> NDArray[np.int64]:
@@ -16,17 +21,24 @@ def sample_steps(time_step: float, steps: int, record: Record) -> NDArray[np.int
     Args:
         time_step: s.
         steps: How many steps the simulation makes.
-        record: What is asked for.
+        record: What is asked for; its samples must be among those that are taken.
 
     Returns:
         Ascending step numbers, ``int64[samples]``; 0 is the state before the first step.
     """
-    taken: list[int] = []
-    time, due = 0.0, 0.0
-    for step in range(1, steps + 1):
-        time += time_step
-        if not taken or time - due >= record.every:
-            taken.append(step)
-            due = time
-    kept = taken if record.samples is None else [taken[index] for index in record.samples]
-    return np.array([0, *kept] if record.initial else kept, dtype=np.int64)
+    stride = _stride(time_step, record.every)
+    if record.samples is None:
+        kept = np.arange(1, steps + 1, stride, dtype=np.int64)
+    else:
+        kept = 1 + stride * np.array(record.samples, dtype=np.int64)
+    return np.insert(kept, 0, 0) if record.initial else kept
+
+
+def count_samples(time_step: float, steps: int, every: float) -> int:
+    """Return how many samples are taken, that of the state before the first step not counted."""
+    return 1 + (steps - 1) // _stride(time_step, every)
+
+
+def _stride(time_step: float, every: float) -> int:
+    """Return the steps from a sample to the next, the first that ends at least *every* seconds later."""
+    return max(1, math.ceil(min(every / time_step * (1 - _ROUNDING), _MOST_STEPS)))

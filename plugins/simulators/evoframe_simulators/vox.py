@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import evoframe_libvox as libvox
 from evoframe import ConfigurationError, Design, InputError, Outcome, Record
 from evoframe_simulators.bodies import CONTRACTILE, PASSIVE, check_design, read_bodies
-from evoframe_simulators.sampling import sample_steps
+from evoframe_simulators.sampling import count_samples, sample_steps
 
 __all__ = ["Vox"]
 
@@ -73,12 +73,15 @@ class Vox:
     slow_damping: float = attrs.field(default=0.01, validator=_NOT_NEGATIVE)
 
     def __attrs_post_init__(self) -> None:
-        self._clock()  # the solver has the last word on what it can do with these settings
+        self._clocks()  # the solver has the last word on what it can do with these settings
 
-    def _clock(self) -> tuple[float, int]:
-        """Return the time step, s, and the number of steps of a body with bonds."""
-        [time_step], [steps] = _model(self, (2, 1, 1)).time_steps(_bar_of_two())
-        return float(time_step), int(steps)
+    def _clocks(self) -> list[tuple[float, int]]:
+        """Return the time step, s, and the number of steps of a body with bonds, and of one without."""
+        try:
+            time_steps, steps = _model(self, (2, 1, 1)).time_steps(_bar_and_lone_voxel())
+        except ValueError as error:
+            raise ValueError(_without_number(error)) from error
+        return list(zip(time_steps.tolist(), steps.tolist(), strict=True))
 
     def check(self, record: Record) -> None:
         """Refuse a record with a track or a sample that there will not be.
@@ -90,24 +93,28 @@ class Vox:
             if track not in self.tracks:
                 raise ConfigurationError(f"vox has no track '{track}'; tracks: {', '.join(self.tracks)}")
         if record.samples:
-            time_step, steps = self._clock()
-            everything = attrs.evolve(record, samples=None, initial=False)
-            taken = len(sample_steps(time_step, steps, everything))
-            if max(record.samples) >= taken:
+            last = max(record.samples)
+            taken, steps = min((count_samples(*clock, record.every), clock[1]) for clock in self._clocks())
+            if last >= taken:
                 raise ConfigurationError(
-                    f"sample {max(record.samples)} of one every {record.every} s is never taken: vox makes "
+                    f"sample {last} of one every {record.every} s is never taken: vox makes "
                     f"{steps} steps in simulator.duration = {self.duration} s, samples 0 to {taken - 1}"
                 )
 
     def key(self, design: Design, record: Record) -> bytes:
-        """Return a digest of the bodies, the offsets that act, and the record."""
+        """Return a digest of the body, the offsets that act, and the record.
+
+        Raises:
+            InputError: The design is no body with a controller.
+        """
+        check_design(design)
         material, phase = design.roles["morphology"], self._phase_cycles(design)
         acting = phase[material == CONTRACTILE] if self.expansion_coefficient else phase[:0]
+        with np.errstate(over="ignore"):  # left to the solver to refuse
+            single = acting.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
         digest = hashlib.blake2b(repr((material.shape, record)).encode(), digest_size=20)
-        digest.update(np.ascontiguousarray(material).tobytes())
-        digest.update(
-            (acting.astype(np.float32) + np.float32(0)).tobytes()
-        )  # the engine reads single precision
+        digest.update(material.tobytes())
+        digest.update(single.tobytes())
         return digest.digest()
 
     def simulate(self, designs: Sequence[Design], record: Record) -> list[Outcome]:
@@ -123,7 +130,7 @@ class Vox:
             try:
                 outcomes |= self._simulate(canvas, {index: designs[index] for index in indices}, record)
             except ValueError as error:  # the solver's words for what cells hold
-                raise InputError(str(error)) from error
+                raise InputError(_without_number(error)) from error
         nothing = _nothing(record)
         return [outcomes.get(index, nothing) for index in range(len(designs))]
 
@@ -191,8 +198,13 @@ def _nothing(record: Record) -> Outcome:
     return Outcome(np.zeros(0, np.int64), np.zeros(0), dict.fromkeys(record.tracks, none), diverged_at=0)
 
 
-def _bar_of_two() -> NDArray[np.uint8]:
-    return np.full((1, 2, 1, 1), PASSIVE, np.uint8)
+def _without_number(error: ValueError) -> str:
+    """Return the solver's words without the number of the body, which nobody knows outside of its batch."""
+    return str(error).partition(" (body ")[0]
+
+
+def _bar_and_lone_voxel() -> NDArray[np.uint8]:
+    return np.array([[PASSIVE, PASSIVE], [0, PASSIVE]], np.uint8).reshape(2, 2, 1, 1)
 
 
 @functools.lru_cache(maxsize=16)

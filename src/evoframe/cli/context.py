@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from evoframe.layers import preset_names
+from evoframe.layers import Layer, layer_of, preset_names
 from evoframe.plugins import Plugins, discover
 
 __all__ = ["configuration_argument", "plugins_of", "set_option", "workers_option"]
@@ -48,11 +48,16 @@ def set_option(function: F) -> F:
     )(function)
 
 
+def _workers_layer(_: click.Context, __: click.Parameter, workers: int | None) -> list[Layer]:
+    return [] if workers is None else [layer_of(f"--workers {workers}", "executor.workers", workers)]
+
+
 def workers_option(function: F) -> F:
-    """Add ``--workers N``."""
+    """Add ``--workers N``, which comes as the layers that it sets."""
     return click.option(
         "--workers",
         type=click.IntRange(min=0),
+        callback=_workers_layer,
         metavar="N",
         help="Simulate on N cores at once; 0: all. The results are the same.",
     )(function)

@@ -97,11 +97,18 @@ def cli(ctx: click.Context, verbose: int, quiet: bool, plugin: tuple[str, ...]) 
     is judged by how well it does with partners from the other population.
     """
     level = logging.ERROR if quiet else logging.WARNING - 10 * min(verbose, 2)
-    logging.basicConfig(level=level, format="%(levelname)s: %(name)s: %(message)s", force=True)
+    logging.basicConfig(level=level, handlers=[_Handler()], format="%(name)s: %(message)s", force=True)
 
 
 for command in (completion, config, plugins, run, simulate):
     cli.add_command(command)
+
+
+class _Handler(logging.Handler):
+    """Writes to whatever standard error is at the time, which a progress bar takes over while it is shown."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        sys.stderr.write(f"{self.format(record)}\n")
 
 
 def main() -> None:

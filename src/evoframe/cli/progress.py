@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable
 from pathlib import Path
 
 from rich import progress
-from rich.console import Console
+from rich.console import Console, RenderableType
+from rich.text import Text
 
 from evoframe.config import RunConfig
 from evoframe.hookspecs import hookimpl
@@ -22,7 +24,7 @@ class Progress:
 
     def __init__(self) -> None:
         self._console = Console(stderr=True)
-        self._bar: progress.Progress | None = None
+        self._bar: _Bar | None = None
         self._task = progress.TaskID(0)
         self._best: dict[str, float] = {}
         self._turns = self._pairs = self._simulations = 0
@@ -79,12 +81,21 @@ class Progress:
         return f"{seconds:.0f} s left"
 
 
-def _bar(console: Console) -> progress.Progress:
-    return progress.Progress(
+class _Bar(progress.Progress):
+    """A bar with the turn and the time left, and below it a line of figures."""
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        yield self.make_tasks_table(self.tasks)
+        yield from (Text(task.fields["detail"], overflow="ellipsis", no_wrap=True) for task in self.tasks)
+
+
+def _bar(console: Console) -> _Bar:
+    return _Bar(
         progress.TextColumn("{task.description}"),
         progress.BarColumn(bar_width=None),
-        progress.TextColumn("{task.fields[detail]}"),
         progress.TimeRemainingColumn(),
+        progress.TextColumn("left"),
         console=console,
         transient=True,
+        expand=True,
     )

@@ -14,7 +14,8 @@ from rich.table import Table
 
 from evoframe.cli.context import configuration_argument, plugins_of, set_option, workers_option
 from evoframe.cli.progress import Progress
-from evoframe.config import load_config
+from evoframe.config import RunConfig, load_config
+from evoframe.layers import Layer, layer_of
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
 from evoframe.run import default_directory, execute
@@ -49,21 +50,20 @@ def run(
     overrides: tuple[str, ...],
     seed: int | None,
     out: Path | None,
-    workers: int | None,
+    workers: list[Layer],
 ) -> None:
     """Run a coevolution: a TOML file, or a preset (without argument: paper).
 
     Ctrl-C stops after the turn in progress; everything up to then is saved.
     """
-    extra = [] if seed is None else [f"run.seed={seed}"]
-    extra += [] if workers is None else [f"executor.workers={workers}"]
-    config = load_config(source, overrides=[*overrides, *extra], plugins=plugins_of(ctx))
+    extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
+    config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins_of(ctx))
     directory = out or default_directory(config)
     quiet = bool(ctx.find_root().params["quiet"])
     if not quiet:
         config.discovered.manager.register(Progress(), name="evoframe:progress")
     with _stop_on_interrupt() as stop:
-        completed = execute(config, directory, Observers(config.discovered.manager), stop.is_asked)
+        completed = _completed(config, directory, stop)
     if not completed:
         click.echo(f"Interrupted; all turns up to here are saved in {directory}", err=True)
         ctx.exit(_INTERRUPTED)
@@ -71,6 +71,14 @@ def run(
         click.echo(directory)
     else:
         Console().print(_summary(load_run(directory)))
+
+
+def _completed(config: RunConfig, directory: Path, stop: _Stop) -> bool:
+    """Run, and return whether it went to the end; a second interrupt gives the turn in progress up."""
+    try:
+        return execute(config, directory, Observers(config.discovered.manager), stop.is_asked)
+    except KeyboardInterrupt:
+        return False
 
 
 class _Stop:
@@ -106,11 +114,11 @@ def _summary(finished: Run) -> Table:
     result, work = finished.summary, finished.workload
     pairs, simulations = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
     diverged = sum(row["score"] is None for row in finished.pairs)
-    champion = finished.table("champions")[-1]
-    table.add_row("best pair simulated", f"{champion['score']!r} m, in turn {champion['turn']}")
+    best = finished.table("best_pairs")[-1]
+    table.add_row("best pair simulated", f"{best['score']!r} m, in turn {best['turn']}")
     for population, fittest in result["fittest"].items():
-        table.add_row(f"fittest {population}", f"{fittest['fitness']!r} m, genome {fittest['genome']}")
-    table.add_row("displacement of the fittest pair", f"{result['fittest_pair_displacement']!r} m")
+        table.add_row(f"fittest {population}", f"{fittest['fitness']!r} m, genome {fittest['genome_id']}")
+    table.add_row("displacement of the fittest pair", f"{result['fittest_pair_score']!r} m")
     table.add_row("pairs", f"{pairs:,}, of which {simulations:,} simulated and {diverged:,} diverged")
     table.add_row("time", f"{sum(row['seconds'] for row in work):.1f} s")
     table.add_row("directory", str(finished.directory))

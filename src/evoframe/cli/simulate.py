@@ -16,6 +16,7 @@ from evoframe.cli.context import plugins_of, set_option, workers_option
 from evoframe.config import RunConfig, load_config
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.evaluation import Evaluator, Score
+from evoframe.layers import Layer
 from evoframe.plugins import Plugins
 from evoframe.store import read_champion
 from evoframe.values import Design, Record
@@ -60,15 +61,14 @@ def simulate(
     overrides: tuple[str, ...],
     as_json: bool,
     trace: Path | None,
-    workers: int | None,
+    workers: list[Layer],
 ) -> None:
     """Simulate given bodies and print the displacement of each.
 
     A FILE is a run's champion.json, or an .npz with material ([X,Y,Z] or [N,X,Y,Z]; codes 0 empty, 1 passive,
     3 contractile) and phase_cycles of the same shape.
     """
-    settings = [*overrides, *([] if workers is None else [f"executor.workers={workers}"])]
-    jobs = [_read(path, preset, settings, plugins_of(ctx)) for path in files]
+    jobs = [_read(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
     labels = [label for job in jobs for label in job.labels]
     scores = [score for job in jobs for score in _evaluate(job)]
     if trace is not None:
@@ -79,13 +79,11 @@ def simulate(
         Console().print(_table(labels, scores))
 
 
-def _read(path: Path, preset: str | None, overrides: list[str], plugins: Plugins) -> _Job:
+def _read(path: Path, preset: str | None, overrides: list[str | Layer], plugins: Plugins) -> _Job:
     if path.suffix == ".json":
         design, simulation, _ = read_champion(path)
-        tables = None if preset else simulation
-        config = load_config(
-            preset or "paper", tables=tables, origin=str(path), overrides=overrides, plugins=plugins
-        )
+        own = [] if preset else [Layer(str(path), simulation)]
+        config = load_config(preset or "paper", overrides=[*own, *overrides], plugins=plugins)
         _check_roles(path, design, config)
         return _Job(path, config, (path.name,), (design,))
     config = load_config(preset or "paper", overrides=overrides, plugins=plugins)

@@ -9,13 +9,10 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from evoframe import ConfigurationError, Design, InputError, Record
 from evoframe.testing import SimulatorContract
 from evoframe_simulators import Vox
-from evoframe_simulators.sampling import sample_steps
 
 DATA = Path(__file__).parents[2] / "data"
 PAPER = Record(("tip",), every=0.01, samples=(0, 5))
@@ -164,33 +161,16 @@ def test_what_is_no_design_is_refused(roles: dict[str, Any], message: str) -> No
         Vox().simulate([Design({**small(5).roles, **roles})], PAPER)
 
 
-class TestSampling:
-    @given(
-        time_step=st.floats(1e-5, 1e-2),
-        steps=st.integers(1, 200),
-        every=st.floats(0, 0.1),
-        initial=st.booleans(),
-    )
-    def test_samples_are_ascending_and_at_least_so_far_apart(
-        self, time_step: float, steps: int, every: float, initial: bool
-    ) -> None:
-        taken = sample_steps(time_step, steps, Record((), every=every, initial=initial))
-        assert taken[0] == (0 if initial else 1)
-        taken = taken[1:] if initial else taken
-        assert taken[0] == 1
-        assert (np.diff(taken) >= 1).all()
-        assert (np.diff(taken) * time_step >= every * (1 - 1e-12) - 1e-12).all()
-        assert taken[-1] <= steps
+def test_what_is_no_design_has_no_key() -> None:
+    with pytest.raises(InputError, match=r"morphology is uint8\[36\]; expected uint8\[X, Y, Z\]"):
+        Vox().key(Design({role: array.reshape(-1) for role, array in small().roles.items()}), PAPER)
 
-    def test_without_an_interval_every_step_is_sampled(self) -> None:
-        assert sample_steps(0.1, 5, Record(())).tolist() == [1, 2, 3, 4, 5]
 
-    def test_samples_are_chosen_by_index(self) -> None:
-        assert sample_steps(0.1, 9, Record((), every=0.25, samples=(0, 2), initial=True)).tolist() == [
-            0,
-            1,
-            7,
-        ]
+def test_a_phase_beyond_single_precision_has_a_key_and_is_refused_by_the_solver() -> None:
+    body = Design({**small().roles, "controller": np.full((4, 3, 3), 1e300)})
+    assert Vox().key(body, PAPER)
+    with pytest.raises(InputError, match=r"within 1e6 cycles of 0$"):
+        Vox().simulate([body], PAPER)
 
 
 def test_a_sample_after_the_end_is_refused_with_the_numbers() -> None:
@@ -200,6 +180,49 @@ def test_a_sample_after_the_end_is_refused_with_the_numbers() -> None:
         "sample 5 of one every 0.01 s is never taken: "
         "vox makes 10 steps in simulator.duration = 0.03 s, samples 0 to 2"
     )
+
+
+def lone(size: int = 2) -> Design:
+    material = np.zeros((size, 1, 1), np.uint8)
+    material[-1] = 3
+    return Design({"morphology": material, "controller": np.zeros(material.shape)})
+
+
+class TestBodyWithoutBonds:
+    """Its time step is longer than that of others where a voxel is larger than 1 m."""
+
+    vox = Vox(voxel_size=4.0, duration=10.0)
+
+    def test_makes_fewer_steps_than_others_if_a_voxel_is_large(self) -> None:
+        bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
+        with_bond, without = self.vox.simulate([bar, lone()], Record(("tip",)))
+        assert len(without.steps) < len(with_bond.steps)
+        assert without.diverged_at is None
+
+    @pytest.mark.parametrize("vox", [vox, Vox()])
+    @pytest.mark.parametrize("every", [0.0, 0.0032, 0.01, 1.0])
+    def test_has_every_sample_that_is_accepted(self, vox: Vox, every: float) -> None:
+        with pytest.raises(ConfigurationError, match="samples 0 to ") as caught:
+            vox.check(Record(("tip",), every=every, samples=(10**9,)))
+        last = int(str(caught.value).rpartition(" ")[2])
+        record = Record(("tip",), every=every, samples=(last,))
+        vox.check(record)
+        bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
+        for outcome in vox.simulate([bar, lone(), lone(1)], record):
+            assert len(outcome.steps) == 1
+
+    def test_has_no_sample_after_its_own_end(self) -> None:
+        with pytest.raises(InputError, match=r"beyond the end of the simulation$"):
+            self.vox.simulate([lone()], Record(("tip",), samples=(10**9,)))
+
+
+def test_a_long_duration_is_checked_at_once() -> None:
+    Vox(duration=1e12).check(Record(("tip",), every=0.01, samples=(0, 10**12)))
+
+
+def test_settings_without_a_usable_time_step_are_refused_without_naming_a_body() -> None:
+    with pytest.raises(ValueError, match=r"no usable time step \(at most 2\^53 steps\)$"):
+        Vox(density=1e-300)
 
 
 def test_settings_with_one_canvas_share_a_model() -> None:
