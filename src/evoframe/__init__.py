@@ -6,7 +6,8 @@ the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :c
 
 from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
-from evoframe.config import Chosen, PopulationConfig, RunConfig, RunSettings, load_config
+from evoframe.config import Chosen, PopulationConfig, RunConfig, RunSettings
+from evoframe.discovery import discover
 from evoframe.errors import (
     ConfigurationError,
     EvoframeError,
@@ -19,7 +20,7 @@ from evoframe.evaluation import Evaluator
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer
 from evoframe.loading import Champion, Run, load_run
-from evoframe.plugins import Plugins, discover, suggestion
+from evoframe.plugins import Plugins, suggestion
 from evoframe.population import Population
 from evoframe.protocols import (
     Aggregator,
@@ -33,6 +34,7 @@ from evoframe.protocols import (
     Objective,
     Simulator,
 )
+from evoframe.resolve import load_config
 from evoframe.run import assemble, run
 from evoframe.values import (
     BestPair,

@@ -11,8 +11,8 @@ from typing import Any
 
 import attrs
 
+from evoframe.champion import FORMAT, champion_from_json
 from evoframe.errors import InputError
-from evoframe.store import FORMAT, champion_from_json
 from evoframe.values import Design
 
 __all__ = ["Champion", "Run", "load_run"]

@@ -1,29 +1,20 @@
-"""Discovery of plugins, each load guarded, and the registry of what they offer."""
+"""The registry: what plugins offer, who observes, and who was skipped."""
 
 from __future__ import annotations
 
 import difflib
-import importlib
-import importlib.metadata
-import importlib.util
-import os
 import re
-import sys
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import attrs
 import pluggy
 
 from evoframe import hookspecs, protocols
-from evoframe.errors import ConfigurationError, PluginError, PluginWarning
+from evoframe.errors import ConfigurationError, PluginError
 
-__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "Source", "discover", "suggestion"]
+__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "Source", "normalized", "suggestion"]
 
-GROUP = "evoframe"
 _COMPONENT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 
 
@@ -146,15 +137,15 @@ class Plugins:
 
     def without(self, distributions: Iterable[str]) -> Plugins:
         """Return the same plugins but those of the named *distributions*."""
-        blocked = {_normalized(distribution) for distribution in distributions}
+        blocked = {normalized(distribution) for distribution in distributions}
         if not blocked:
             return self
         kept = Plugins(skipped=self.skipped)
         for name, plugin in self.manager.list_name_plugin():
             distribution, entry_point = name.rsplit(":", 1)
-            if plugin is not None and _normalized(distribution) not in blocked:
+            if plugin is not None and normalized(distribution) not in blocked:
                 kept.manager.register(plugin, name=f"{distribution}:{entry_point}")
-        kept.offers = [o for o in self.offers if _normalized(o.source.distribution) not in blocked]
+        kept.offers = [o for o in self.offers if normalized(o.source.distribution) not in blocked]
         return kept
 
     def require(self, distributions: Iterable[str]) -> None:
@@ -164,10 +155,10 @@ class Plugins:
             PluginError: One is missing or was skipped; says why.
         """
         names = {name.rsplit(":", 1)[0] for name, _ in self.manager.list_name_plugin()}
-        usable = {_normalized(name) for name in names}
+        usable = {normalized(name) for name in names}
         for distribution in distributions:
-            wanted = _normalized(distribution)
-            causes = [s.cause for s in self.skipped if _normalized(s.source.distribution) == wanted]
+            wanted = normalized(distribution)
+            causes = [s.cause for s in self.skipped if normalized(s.source.distribution) == wanted]
             if causes:
                 raise PluginError(f"required plugin '{distribution}' cannot be used: {causes[0]}")
             if wanted not in usable:
@@ -190,7 +181,7 @@ class Plugins:
             for offer in self.offers
             if offer.kind == kind
             and offer.name == name
-            and _normalized(distribution) in ("", _normalized(offer.source.distribution))
+            and normalized(distribution) in ("", normalized(offer.source.distribution))
         ]
         if len(found) == 1:
             return found[0]
@@ -207,91 +198,9 @@ class Plugins:
         return message
 
 
-def discover(modules: Iterable[str] = ()) -> Plugins:
-    """Load the installed plugins and the local *modules*.
-
-    The environment variables ``EVOFRAME_PLUGINS_BLOCK`` and ``EVOFRAME_PLUGINS_REQUIRE`` name distributions,
-    separated by commas, that are not loaded, or that must be.
-
-    Args:
-        modules: Importable names, or paths of Python files, of plugins that no distribution installs.
-
-    Raises:
-        PluginError: A local module, or a required distribution, cannot be used.
-
-    Warns:
-        PluginWarning: An installed plugin cannot be used; the others are.
-    """
-    plugins = Plugins()
-    blocked = {_normalized(name) for name in _listed("EVOFRAME_PLUGINS_BLOCK")}
-    for source, entry_point in _entry_points():
-        if _normalized(source.distribution) not in blocked:
-            _load_guarded(plugins, source, entry_point)
-    for module in dict.fromkeys(modules):
-        _load_local(plugins, module)
-    plugins.require(_listed("EVOFRAME_PLUGINS_REQUIRE"))
-    return plugins
-
-
-def _normalized(distribution: str) -> str:
+def normalized(distribution: str) -> str:
     """Return a distribution's name as packaging compares it (PEP 503)."""
     return re.sub(r"[-_.]+", "-", distribution).lower()
-
-
-def _listed(variable: str) -> list[str]:
-    return [name.strip() for name in os.environ.get(variable, "").split(",") if name.strip()]
-
-
-def _entry_points() -> list[tuple[Source, importlib.metadata.EntryPoint]]:
-    """Return the entry points of the group, in an order that does not depend on the file system."""
-    found = []
-    for entry_point in importlib.metadata.entry_points(group=GROUP):
-        distribution = entry_point.dist
-        name = distribution.name if distribution else "unknown"
-        version = distribution.version if distribution else "unknown"
-        found.append((Source(name, version, entry_point.name), entry_point))
-    return sorted(found, key=lambda pair: pair[0])
-
-
-def _load_guarded(plugins: Plugins, source: Source, entry_point: importlib.metadata.EntryPoint) -> None:
-    try:
-        plugins.add(entry_point.load(), source)
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - any fault of a plugin is only that plugin's
-        cause = str(error) if isinstance(error, PluginError) else f"{type(error).__name__}: {error}"
-        plugins.skipped.append(Skipped(source, cause))
-        warnings.warn(f"plugin {source} is skipped: {cause}", PluginWarning, stacklevel=3)
-
-
-def _load_local(plugins: Plugins, module: str) -> None:
-    name = Path(module).stem if module.endswith(".py") else module
-    try:
-        plugins.add(_import_local(module, name), Source(name, "local", name))
-    except (Exception, SystemExit) as error:
-        cause = str(error) if isinstance(error, PluginError) else f"{type(error).__name__}: {error}"
-        raise PluginError(f"plugin module '{module}' cannot be used: {cause}") from error
-
-
-def _import_local(module: str, name: str) -> ModuleType:
-    if not module.endswith(".py"):
-        here = str(Path.cwd())
-        if here not in sys.path:
-            sys.path.insert(0, here)
-        return importlib.import_module(module)
-    path = Path(module)
-    if not path.is_file():
-        raise PluginError("there is no such file")
-    private = f"evoframe_local_{name}"  # so that my random.py does not stand in for Python's
-    spec = importlib.util.spec_from_file_location(private, path)
-    if spec is None or spec.loader is None:
-        raise PluginError("it is not a Python module")
-    loaded = importlib.util.module_from_spec(spec)
-    sys.modules[private] = loaded  # attrs looks modules up while it makes classes
-    try:
-        spec.loader.exec_module(loaded)
-    except BaseException:
-        del sys.modules[private]
-        raise
-    return loaded
 
 
 def _check_hooks(manager: pluggy.PluginManager, plugin: object) -> None:

@@ -15,7 +15,7 @@ import tomli_w
 
 from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
-from evoframe.config import RunConfig, load_config
+from evoframe.config import RunConfig
 from evoframe.evaluation import Evaluator
 from evoframe.layers import Tree, layer_of
 from evoframe.loading import Run, load_run
@@ -23,6 +23,7 @@ from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.population import Population
 from evoframe.randomness import stream
+from evoframe.resolve import load_config
 from evoframe.store import Store
 from evoframe.values import Turn
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
-import math
 import os
 import sqlite3
 import tempfile
@@ -14,30 +13,15 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from evoframe.champion import FORMAT, champion_document
 from evoframe.errors import InputError, RunError
-from evoframe.values import BestPair, Design, Pair, PopulationReport, Turn
+from evoframe.values import Pair, PopulationReport, Turn
 
-__all__ = [
-    "FORMAT",
-    "Store",
-    "champion_from_json",
-    "design_from_json",
-    "design_to_json",
-    "read_champion",
-    "write_json",
-]
+__all__ = ["Store", "write_json"]
 
 _log = logging.getLogger(__name__)
 
-FORMAT = 1
-"""Version of the run directory and of the champion file."""
-
 _SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
-
-_CHAMPION_KEYS = {"format", "score", "simulation", "design"}
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -155,100 +139,9 @@ class Store:
             self._synced = time.monotonic()
 
 
-def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str, Any]:
-    """Return all that is needed to simulate the champion again, and nothing of this machine, as JSON."""
-    return {
-        "format": FORMAT,
-        "score": pair.score,
-        "turn": pair.turn,
-        "genome_ids": dict(pair.genome_ids),
-        "simulation": simulation,
-        "design": design_to_json(pair.design),
-        "genomes": dict(pair.genomes),
-    }
-
-
-def design_to_json(design: Design) -> dict[str, Any]:
-    """Return a design as JSON values, exact to the last bit."""
-    return {
-        role: {"dtype": array.dtype.name, "shape": list(array.shape), "values": array.ravel().tolist()}
-        for role, array in design.roles.items()
-    }
-
-
-def design_from_json(document: Any) -> Design:
-    """Return the design that :func:`design_to_json` described.
-
-    Raises:
-        ValueError: It is not such a document.
-    """
-    if not isinstance(document, dict):
-        raise ValueError("expected a table of roles")  # noqa: TRY004 - it is a bad document
-    return Design({role: _array_from_json(role, given) for role, given in document.items()})
-
-
-def champion_from_json(text: str) -> tuple[Design, dict[str, Any], float]:
-    """Return the design of a champion, the tables that it was simulated with, and its score.
-
-    Raises:
-        ValueError: The text is not JSON, or no champion; says why.
-    """
-    document = _parsed(text)
-    if not isinstance(document, dict) or not document.keys() >= _CHAMPION_KEYS:
-        raise ValueError("this JSON is no champion of evoframe; expected a run's champion.json")
-    if document["format"] is True or document["format"] != FORMAT:
-        raise ValueError(f"format {document['format']!r}, but this evoframe reads format {FORMAT}")
-    if not isinstance(document["score"], float) or not math.isfinite(document["score"]):
-        raise ValueError(f"score: expected a number, found {document['score']!r}")
-    if not isinstance(document["simulation"], dict):
-        raise ValueError(  # noqa: TRY004 - it is a bad document
-            f"simulation: expected a table, found {document['simulation']!r}"
-        )
-    try:
-        design = design_from_json(document["design"])
-    except (KeyError, OverflowError, TypeError, ValueError) as error:
-        raise ValueError(f"design: not as evoframe writes it: {error}") from error
-    return design, document["simulation"], document["score"]
-
-
-def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
-    """Return what :func:`champion_from_json` finds in a ``champion.json``.
-
-    Raises:
-        InputError: The file cannot be read, or is no champion.
-    """
-    try:
-        return champion_from_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
-
-
 def write_json(path: Path, document: Any) -> None:
     """Write JSON so that a reader sees the old file or the new one, never a part."""
     _write_atomically(path, _json(document) + "\n")
-
-
-def _parsed(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"not valid JSON: {error}") from error
-
-
-def _array_from_json(role: str, given: Any) -> NDArray[Any]:
-    """Return an array, exactly as it is written: nothing is rounded, wrapped or guessed."""
-    types: dict[Any, type[np.generic]] = {"uint8": np.uint8, "int64": np.int64, "float64": np.float64}
-    dtype, shape, values = given["dtype"], given["shape"], given["values"]
-    if dtype not in types:
-        raise ValueError(f"{role}: unknown dtype {dtype!r}")
-    kind = float if dtype == "float64" else int
-    if not all(type(value) is kind for value in values):
-        raise ValueError(f"{role}: expected values of type {dtype}")
-    if not all(type(length) is int and length >= 0 for length in shape):
-        raise ValueError(f"{role}: expected the lengths of axes, found the shape {shape}")
-    return np.array(values, dtype=types[dtype]).reshape(shape)
 
 
 def _json(value: Any) -> str:

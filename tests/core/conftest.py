@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 import toys
 
-from evoframe.config import RunConfig, load_config
+from evoframe.config import RunConfig
 from evoframe.plugins import Plugins, Source
+from evoframe.resolve import load_config
 
 
 @pytest.fixture

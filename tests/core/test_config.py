@@ -15,8 +15,10 @@ from hypothesis import strategies as st
 
 import evoframe
 from evoframe import ConfigurationError, RunConfig
-from evoframe.config import load_config, preset_names
-from evoframe.plugins import Plugins, discover
+from evoframe.discovery import discover
+from evoframe.layers import preset_names
+from evoframe.plugins import Plugins
+from evoframe.resolve import load_config
 
 Load = Callable[..., RunConfig]
 

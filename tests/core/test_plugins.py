@@ -13,8 +13,9 @@ import pytest
 import toys
 
 from evoframe import ConfigurationError, PluginError, PluginWarning, RunConfig, hookimpl
+from evoframe.discovery import discover
 from evoframe.observers import Observers
-from evoframe.plugins import Plugins, Source, discover
+from evoframe.plugins import Plugins, Source
 
 HERE = Source("here", "1.0", "main")
 

@@ -17,9 +17,9 @@ import toys
 
 import evoframe.store
 from evoframe import ConfigurationError, InputError, PluginWarning, RunConfig, Turn, hookimpl, load_run, run
+from evoframe.champion import design_from_json, design_to_json, read_champion
 from evoframe.plugins import Plugins, Source
 from evoframe.run import default_directory, execute
-from evoframe.store import design_from_json, design_to_json, read_champion
 
 Load = Callable[..., RunConfig]
 

@@ -8,8 +8,9 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
+from evoframe.discovery import discover
 from evoframe.layers import Layer, layer_of, preset_names
-from evoframe.plugins import Plugins, discover
+from evoframe.plugins import Plugins
 
 __all__ = ["configuration_argument", "plugins_of", "set_option", "workers_option"]
 

@@ -14,10 +14,11 @@ from rich.table import Table
 
 from evoframe.cli.context import configuration_argument, plugins_of, set_option, workers_option
 from evoframe.cli.progress import Progress
-from evoframe.config import RunConfig, load_config
+from evoframe.config import RunConfig
 from evoframe.layers import Layer, layer_of
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
+from evoframe.resolve import load_config
 from evoframe.run import default_directory, execute
 
 __all__ = ["run"]

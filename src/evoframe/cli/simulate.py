@@ -12,13 +12,14 @@ import click
 from rich.console import Console
 from rich.table import Table
 
+from evoframe.champion import read_champion
 from evoframe.cli.context import plugins_of, set_option, workers_option
-from evoframe.config import RunConfig, load_config
+from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.evaluation import Evaluator, Score
 from evoframe.layers import Layer
 from evoframe.plugins import Plugins
-from evoframe.store import read_champion
+from evoframe.resolve import load_config
 from evoframe.values import Design, Record
 
 __all__ = ["simulate"]
