@@ -55,7 +55,8 @@ def best_within(finished: evoframe.Run, simulations: float) -> float:
         if spent > simulations:
             break
         turn = row["turn"]
-    return max(row["score"] for row in finished.table("best_pairs") if row["turn"] <= turn)
+    scores: list[float] = [row["score"] for row in finished.table("best_pairs") if row["turn"] <= turn]
+    return max(scores)
 
 
 def all_contractile() -> tuple[float, float]:
@@ -105,7 +106,8 @@ def main() -> None:
     options = parser.parse_args()
     jobs = [(name, seed) for seed in range(1, options.seeds + 1) for name in CONFIGURATIONS]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        directories = list(pool.map(lambda job: run_one(*job, options.out), jobs))
+        started = [pool.submit(run_one, name, seed, options.out) for name, seed in jobs]
+        directories = [run.result() for run in started]
     runs: dict[str, list[evoframe.Run]] = {name: [] for name in CONFIGURATIONS}
     for (name, _), directory in zip(jobs, directories, strict=True):
         runs[name].append(evoframe.load_run(directory))

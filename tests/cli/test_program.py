@@ -11,15 +11,13 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import toys
+from processes import Evoframe
 
 import evoframe as package
-
-Evoframe = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def on_a_terminal(arguments: list[str], directory: Path) -> str:
@@ -36,6 +34,19 @@ def on_a_terminal(arguments: list[str], directory: Path) -> str:
             shown += part
     assert os.waitpid(pid, 0)[1] == 0, shown
     return shown.decode()
+
+
+def running(directory: Path, until: str) -> subprocess.Popen[str]:
+    """Start the paper's run in ``here``, and return as soon as the file *until* is there."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "evoframe", "run", "--workers", "1", "--out", "here"],
+        cwd=directory,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (directory / "here" / until).exists():
+        time.sleep(0.02)
+    return process
 
 
 def test_says_its_version(evoframe: Evoframe) -> None:
@@ -184,14 +195,7 @@ class TestRun:
         )  # the cursor is hidden, and comes back
 
     def test_a_second_interrupt_stops_at_once_and_keeps_what_is_saved(self, tmp_path: Path) -> None:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "evoframe", "run", "--workers", "1", "--out", "here"],
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        while not (tmp_path / "here" / "run.db").exists():
-            time.sleep(0.02)
+        process = running(tmp_path, until="run.db")
         time.sleep(0.3)  # within the initial meeting, which takes a second or more
         process.send_signal(signal.SIGINT)
         time.sleep(0.05)
@@ -203,15 +207,8 @@ class TestRun:
         assert len(package.load_run(tmp_path / "here").turns) in (0, 2)
 
     def test_interrupt_stops_after_the_turn_and_keeps_it(self, tmp_path: Path) -> None:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "evoframe", "run", "--out", "here"],
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        while not (tmp_path / "here" / "champion.json").exists():
-            time.sleep(0.05)
-        os.kill(process.pid, signal.SIGINT)
+        process = running(tmp_path, until="champion.json")
+        process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=60)
         assert process.returncode == 130
         assert "Interrupted; all turns up to here are saved in here" in errors

@@ -150,11 +150,11 @@ class TestChampion:
         return tmp_path / "here" / "champion.json"
 
     def test_gives_its_displacement_again_to_the_last_bit(self, evoframe: Evoframe, champion: Path) -> None:
-        recorded = json.loads(champion.read_text())["displacement"]
+        recorded = json.loads(champion.read_text())["score"]
         assert json.loads(evoframe("simulate", champion, "--json").stdout)["displacement"] == [recorded]
 
     def test_is_simulated_as_a_preset_does_on_demand(self, evoframe: Evoframe, champion: Path) -> None:
-        recorded = json.loads(champion.read_text())["displacement"]
+        recorded = json.loads(champion.read_text())["score"]
         [other] = json.loads(evoframe("simulate", champion, "--preset", "paper", "--json").stdout)[
             "displacement"
         ]

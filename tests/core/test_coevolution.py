@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
-import json
 import math
 import statistics
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
-import attrs
 import numpy as np
 import pytest
 import toys
 from hypothesis import given
 from hypothesis import strategies as st
+from loops import continued, history, stopped
 
-from evoframe import Coevolution, RunConfig, RunError, Turn, assemble
+from evoframe import PopulationReport, RunConfig, RunError, Turn, assemble
 from evoframe.population import Population
 
 Load = Callable[..., RunConfig]
+T = TypeVar("T")
 
 
-def history(turns: Iterator[Turn] | list[Turn]) -> list[Any]:
-    return [(turn.index, turn.reports, turn.pairs) for turn in turns]
+def known(value: T | None) -> T:
+    assert value is not None
+    return value
+
+
+def assert_fitness_is_the_mean(turn: Turn, report: PopulationReport, column: int, rel: float) -> None:
+    for member in report.members:
+        scores = [known(pair.score) for pair in turn.pairs if pair.genomes[column] == member.id]
+        assert member.fitness == pytest.approx(statistics.fmean(scores), rel=rel)
 
 
 def test_first_everyone_meets_everyone_and_gets_the_arithmetic_mean(toy_config: Load) -> None:
@@ -31,9 +38,8 @@ def test_first_everyone_meets_everyone_and_gets_the_arithmetic_mean(toy_config: 
     assert len(turn.pairs) == 6 * 5
     for position, report in enumerate(turn.reports):
         for member in report.members:
-            scores = [pair.score for pair in turn.pairs if pair.genomes[position] == member.id]
-            assert len(scores) == (5, 6)[position]
-            assert member.fitness == pytest.approx(statistics.fmean(scores), rel=1e-14)
+            assert sum(pair.genomes[position] == member.id for pair in turn.pairs) == (5, 6)[position]
+        assert_fitness_is_the_mean(turn, report, position, rel=1e-14)
 
 
 def test_then_populations_take_turns_in_order(toy_config: Load) -> None:
@@ -49,8 +55,8 @@ def test_all_members_meet_the_fittest_of_the_other_population(toy_config: Load) 
     for turn in turns[1:]:
         [report] = turn.reports
         other = others["b" if report.population == "a" else "a"]
-        fittest = sorted(other.members, key=lambda member: -member.fitness)[:2]
-        column = ["a", "b"].index(report.population)
+        fittest = sorted(other.members, key=lambda member: -known(member.fitness))[:2]
+        column = "ab".index(report.population)
         met = {pair.genomes[1 - column] for pair in turn.pairs}
         assert met == {member.id for member in fittest}
         assert len(turn.pairs) == 2 * len(report.members)
@@ -69,16 +75,13 @@ def test_the_other_population_keeps_its_fitness(toy_config: Load) -> None:
 def test_fitness_is_the_aggregate_of_the_scores_of_its_pairs(toy_config: Load) -> None:
     for turn in list(assemble(toy_config()))[1:]:
         [report] = turn.reports
-        column = ["a", "b"].index(report.population)
-        for member in report.members:
-            scores = [pair.score for pair in turn.pairs if pair.genomes[column] == member.id]
-            assert member.fitness == pytest.approx(statistics.fmean(scores), rel=1e-14)
+        assert_fitness_is_the_mean(turn, report, "ab".index(report.population), rel=1e-14)
 
 
 def test_the_best_pair_is_the_earliest_of_the_best_that_were_simulated(toy_config: Load) -> None:
     best, found = -math.inf, None
     for turn in assemble(toy_config()):
-        top = max(pair.score for pair in turn.pairs)
+        top = max(known(pair.score) for pair in turn.pairs)
         if top > best:
             best, found = top, turn
             assert turn.best_pair is not None
@@ -127,13 +130,7 @@ def test_two_loops_interleaved_equal_each_alone(toy_config: Load) -> None:
 @pytest.mark.parametrize("at", range(9))
 def test_a_restored_loop_continues_bit_for_bit(toy_config: Load, at: int) -> None:
     whole = history(assemble(toy_config()))
-    first = assemble(toy_config())
-    for turn in first:
-        if turn.index == at:
-            break
-    state = json.loads(json.dumps(first.state()))
-    second = assemble(toy_config())
-    second.restore(state)
+    second = continued(toy_config(), stopped(toy_config(), at))
     assert history(second) == whole[at + 1 :]
     assert second.best_score == max(pair[2][i].score for pair in whole for i in range(len(pair[2])))
 
@@ -163,10 +160,7 @@ class TestMoreThanTwoPopulations:
     def test_fitness_follows_from_the_scores_of_all_pairs_of_a_turn(self, turns: list[Turn]) -> None:
         for turn in turns:
             for report in turn.reports:
-                column = "abc".index(report.population)
-                for member in report.members:
-                    scores = [pair.score for pair in turn.pairs if pair.genomes[column] == member.id]
-                    assert member.fitness == pytest.approx(statistics.fmean(scores), rel=1e-12)
+                assert_fitness_is_the_mean(turn, report, "abc".index(report.population), rel=1e-12)
 
 
 class TestClosingMeeting:
@@ -185,7 +179,7 @@ class TestClosingMeeting:
         for seed in range(20):
             coevolution = assemble(toy_config("collaboration={name='toy-last'}", f"run.seed={seed}"))
             turns = list(coevolution)
-            assert coevolution.best_score == max(pair.score for turn in turns for pair in turn.pairs)
+            assert coevolution.best_score == max(known(pair.score) for turn in turns for pair in turn.pairs)
             better += turns[-1].best_pair is not None
         assert better > 0
 
@@ -197,17 +191,10 @@ class TestClosingMeeting:
     def test_takes_place_once_after_a_restart_too(self, toy_config: Load) -> None:
         config = toy_config("collaboration={name='toy-last'}")
         whole = history(assemble(config))
-        first = assemble(config)
-        for turn in first:
-            if turn.index == first.length:
-                break
-        second = assemble(config)
-        second.restore(json.loads(json.dumps(first.state())))
+        second = continued(config, stopped(config, assemble(config).length))
         assert not second.finished
         assert history(second) == whole[-1:]
-        third = assemble(config)
-        third.restore(json.loads(json.dumps(second.state())))
-        assert history(third) == []
+        assert history(continued(config, second)) == []
 
 
 class TestRandomStreams:
@@ -274,8 +261,8 @@ class TestDivergence:
         marked = 0
         for turn in assemble(toy_config("simulator.limit=0.15", "run.generations=20")):
             for report in turn.reports:
-                column = ["a", "b"].index(report.population)
-                clean = [member.fitness for member in report.members if not member.diverged]
+                column = "ab".index(report.population)
+                clean = [known(member.fitness) for member in report.members if not member.diverged]
                 for member in report.members:
                     scores = [pair.score for pair in turn.pairs if pair.genomes[column] == member.id]
                     assert member.diverged == (None in scores)
@@ -314,30 +301,25 @@ class TestDivergence:
             next(iter(assemble(toy_config("simulator.limit=0"))))
 
 
-@attrs.define
-class Scripted:
-    """An evolver of which the members are given."""
-
-    ids: list[int]
-
-    def members(self) -> list[Any]:
-        from evoframe import Member  # noqa: PLC0415
-
-        return [Member(id=i, fitness=None) for i in self.ids]
-
-    def tell(self, fitness: Any, measures: Any) -> None:
-        pass
+def unjudged() -> Population:
+    rng = np.random.default_rng(0)
+    return Population("a", toys.Number(), toys.DriftRun(step=0.1, size=0, rng=rng), rng)
 
 
-def judged(population: Population, ids: list[int], fitness: list[float | None]) -> Any:
-    population.evolver.ids = ids  # type: ignore[attr-defined]
-    population.judge(fitness, floor=None)
+def judged(
+    population: Population, ids: list[int], fitness: list[float | None], floor: float | None = None
+) -> PopulationReport:
+    """Replace the members by those with the *ids*, and judge them."""
+    evolver = population.evolver
+    assert isinstance(evolver, toys.DriftRun)
+    evolver.ids, evolver.size = ids, len(ids)
+    population.judge(fitness, floor)
     return population.report()
 
 
 @pytest.fixture
 def population() -> Population:
-    return Population("a", None, Scripted([]), np.random.default_rng(0))  # type: ignore[arg-type]
+    return unjudged()
 
 
 class TestChampion:
@@ -368,9 +350,8 @@ class TestChampion:
         assert [member.fitness for member in report.members] == [-1.0, -1.0]
 
     def test_before_there_was_one_the_lowest_score_of_the_turn_counts(self, population: Population) -> None:
-        population.evolver.ids = [1, 2]  # type: ignore[attr-defined]
-        population.judge([None, None], floor=0.25)
-        assert [member.fitness for member in population.report().members] == [0.25, 0.25]
+        report = judged(population, [1, 2], [None, None], floor=0.25)
+        assert [member.fitness for member in report.members] == [0.25, 0.25]
 
     def test_nobody_is_the_fittest_before_anybody_was_judged(self, population: Population) -> None:
         with pytest.raises(RunError, match="population 'a' has no members before the first turn"):
@@ -379,12 +360,12 @@ class TestChampion:
 
 @given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=20))
 def test_the_fittest_is_the_first_of_the_best(fitness: list[float]) -> None:
-    population = Population("a", None, Scripted([]), np.random.default_rng(0))  # type: ignore[arg-type]
+    population = unjudged()
     judged(population, list(range(len(fitness))), list(fitness))
     assert population.fittest() == fitness.index(max(fitness))
 
 
 def test_iterating_again_after_the_end_gives_nothing(toy_config: Load) -> None:
-    coevolution: Coevolution = assemble(toy_config())
+    coevolution = assemble(toy_config())
     assert len(list(coevolution)) == 9
     assert list(coevolution) == []

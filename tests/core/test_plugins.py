@@ -11,6 +11,7 @@ from typing import Any
 import attrs
 import pytest
 import toys
+from modules import plugin
 
 from evoframe import ConfigurationError, PluginError, PluginWarning, RunConfig, hookimpl
 from evoframe.discovery import discover
@@ -18,13 +19,6 @@ from evoframe.observers import Observers
 from evoframe.plugins import Plugins, Source
 
 HERE = Source("here", "1.0", "main")
-
-
-def plugin(**functions: Any) -> types.ModuleType:
-    module = types.ModuleType("plugin")
-    for name, function in functions.items():
-        setattr(module, name, hookimpl(function))
-    return module
 
 
 class TestRegistry:
@@ -78,7 +72,7 @@ class TestRegistry:
 
     def test_a_function_of_another_name_may_implement_a_hook(self, toy_plugins: Plugins) -> None:
         module = types.ModuleType("plugin")
-        module.offer = hookimpl(specname="evoframe_aggregators")(lambda: {"mine": toys.Mean})  # type: ignore[attr-defined]
+        vars(module)["offer"] = hookimpl(specname="evoframe_aggregators")(lambda: {"mine": toys.Mean})
         toy_plugins.add(module, HERE)
         assert toy_plugins.find("aggregator", "mine").source == HERE
 

@@ -6,7 +6,6 @@ import contextlib
 import json
 import sqlite3
 import statistics
-import types
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,19 +13,16 @@ from typing import Any
 import numpy as np
 import pytest
 import toys
+from modules import plugin
+from recorded import assert_same_result, rows
 
 import evoframe.store
-from evoframe import ConfigurationError, InputError, PluginWarning, RunConfig, Turn, hookimpl, load_run, run
+from evoframe import ConfigurationError, InputError, PluginWarning, RunConfig, Turn, load_run, run
 from evoframe.champion import design_from_json, design_to_json, read_champion
 from evoframe.plugins import Plugins, Source
 from evoframe.run import default_directory, execute
 
 Load = Callable[..., RunConfig]
-
-
-def rows(directory: Path, table: str) -> list[tuple[Any, ...]]:
-    with contextlib.closing(sqlite3.connect(directory / "run.db")) as database:
-        return database.execute(f'SELECT * FROM "{table}"').fetchall()  # noqa: S608
 
 
 class TestDirectory:
@@ -43,11 +39,7 @@ class TestDirectory:
     ) -> None:
         first = run(toy_config("run.seed=8"), out=tmp_path / "first")
         second = run(first.directory / "config.toml", out=tmp_path / "second", plugins=toy_plugins)
-        for table in ("turns", "individuals", "pairs", "best_pairs", "state", "meta"):
-            assert rows(first.directory, table) == rows(second.directory, table)
-        assert (first.directory / "champion.json").read_bytes() == (
-            second.directory / "champion.json"
-        ).read_bytes()
+        assert_same_result(first.directory, second.directory)
 
     def test_has_one_row_a_turn_an_individual_and_a_pair(self, toy_config: Load, tmp_path: Path) -> None:
         finished = run(toy_config(), out=tmp_path / "run")
@@ -173,9 +165,12 @@ class TestPython:
         assert finished.config["collaboration"] == {"name": "toy-first", "n": 3}
 
     def test_numbers_of_numpy_are_numbers(self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path) -> None:
-        seed, limit = np.int64(5), np.float64(2.5)
         finished = run(
-            toy_file, seed=seed, out=tmp_path / "run", plugins=toy_plugins, simulator={"limit": limit}
+            toy_file,
+            seed=np.int64(5),  # type: ignore[arg-type]  # as a script may well do
+            out=tmp_path / "run",
+            plugins=toy_plugins,
+            simulator={"limit": np.float64(2.5)},
         )
         assert finished.config["run"]["seed"] == 5
         assert finished.config["simulator"]["limit"] == 2.5
@@ -209,7 +204,6 @@ class TestObservers:
         self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
     ) -> None:
         told: list[Any] = []
-        observer = types.ModuleType("observer")
 
         def started(directory: Path) -> None:
             told.append("started")
@@ -220,9 +214,9 @@ class TestObservers:
         def finished(completed: bool) -> None:
             told.append(completed)
 
-        observer.evoframe_run_started = hookimpl(started)  # type: ignore[attr-defined]
-        observer.evoframe_turn_finished = hookimpl(turned)  # type: ignore[attr-defined]
-        observer.evoframe_run_finished = hookimpl(finished)  # type: ignore[attr-defined]
+        observer = plugin(
+            evoframe_run_started=started, evoframe_turn_finished=turned, evoframe_run_finished=finished
+        )
         toy_plugins.add(observer, Source("watcher", "1.0", "watch"))
         run(toy_config(), out=tmp_path / "run")
         assert told == ["started", *[(index, index + 1) for index in range(9)], True]
@@ -231,13 +225,11 @@ class TestObservers:
         self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
     ) -> None:
         undisturbed = run(toy_config(), out=tmp_path / "undisturbed")
-        observer = types.ModuleType("observer")
 
         def turned(turn: Turn) -> None:
             raise OSError("no disk")
 
-        observer.evoframe_turn_finished = hookimpl(turned)  # type: ignore[attr-defined]
-        toy_plugins.add(observer, Source("watcher", "1.0", "watch"))
+        toy_plugins.add(plugin(evoframe_turn_finished=turned), Source("watcher", "1.0", "watch"))
         with pytest.warns(PluginWarning, match="observer 'watcher:watch' is disabled: OSError: no disk"):
             disturbed = run(toy_config(), out=tmp_path / "disturbed")
         assert disturbed.pairs == undisturbed.pairs

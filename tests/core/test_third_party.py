@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
+import functools
 import json
-import os
 import shutil
-import subprocess
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from processes import Evoframe, python
 
 SOURCES = Path(__file__).parents[1] / "third_party"
-Evoframe = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def install(name: str, target: Path) -> None:
     source = target.parent / f"source-{name}"
     shutil.copytree(SOURCES / name, source)  # building leaves files behind
     options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--target", str(target)]
-    subprocess.run([sys.executable, "-m", "pip", "install", *options, str(source)], check=True)
+    installed = python("-m", "pip", "install", *options, source)
+    assert installed.returncode == 0, installed.stderr
 
 
 @pytest.fixture(scope="module")
@@ -33,18 +31,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def evoframe(site: Path, tmp_path: Path) -> Evoframe:
-    def call(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-        variables = {**os.environ, "PYTHONPATH": str(site), **environment}
-        return subprocess.run(
-            [sys.executable, "-m", "evoframe", *arguments],
-            cwd=tmp_path,
-            env=variables,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-
-    return call
+    return functools.partial(python, "-m", "evoframe", directory=tmp_path, PYTHONPATH=str(site))
 
 
 def test_an_aggregator_is_selected_by_name(evoframe: Evoframe, tmp_path: Path) -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
+from processes import python
 
 import evoframe
 
@@ -18,21 +17,22 @@ README = (ROOT / "README.md").read_text()
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.name)
 def test_every_example_runs(path: Path, tmp_path: Path) -> None:
-    ran = subprocess.run([sys.executable, path], cwd=tmp_path, capture_output=True, text=True, check=False)
+    ran = python(path, directory=tmp_path)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout
 
 
 def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     [block] = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    subprocess.run([sys.executable, "-c", block], cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+    ran = python("-c", block, directory=tmp_path)
+    assert ran.returncode == 0, ran.stderr
 
 
 def test_the_configuration_of_the_readme_is_valid(tmp_path: Path) -> None:
     [block] = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
     path = tmp_path / "mine.toml"
     path.write_text(block)
-    assert evoframe.load_config(path).aggregator.component.weights == (0.7, 0.3)
+    assert evoframe.load_config(path).tables()["aggregator"]["weights"] == [0.7, 0.3]
 
 
 def test_the_table_of_components_is_complete() -> None:

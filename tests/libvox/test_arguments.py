@@ -152,12 +152,12 @@ def test_shapes_must_fit(small_model: ModelMaker) -> None:
     with pytest.raises(ValueError, match=r"sample_steps must have the shape \[N\], got \[1, 1\]"):
         model.simulate(material, phase, np.zeros((1, 1), np.int64))
     with pytest.raises(ValueError, match="sample_steps must be int64, got float64"):
-        model.simulate(material, phase, [0.0])  # type: ignore[list-item]
+        model.simulate(material, phase, [0.0])  # type: ignore[list-item]  # the mistake under test
 
 
 def test_unknown_track(small_model: ModelMaker) -> None:
     with pytest.raises(ValueError, match="unknown tracks elbow, knee; there are tip, face, body, voxels"):
-        small_model(CANVAS).simulate(*one_body(), [0], ["knee", "elbow"])  # type: ignore[list-item]
+        small_model(CANVAS).simulate(*one_body(), [0], ["knee", "elbow"])  # type: ignore[list-item]  # the mistake under test
 
 
 def test_arrays_may_have_any_layout(small_model: ModelMaker) -> None:

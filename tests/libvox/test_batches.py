@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from evoframe_libvox import Model, Result
 
 ModelMaker = Callable[..., Model]
+Bodies = tuple[NDArray[np.uint8], NDArray[np.float64]]
 CANVAS = (4, 3, 3)
 
 
 @pytest.fixture(scope="module")
-def bodies() -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+def bodies() -> Bodies:
     rng = np.random.default_rng(1)
     material = rng.choice(np.array([0, 1, 3], np.uint8), size=(12, *CANVAS))
     material[:, 0, 0, 0] = 1
@@ -42,9 +43,7 @@ def part(result: Result, bodies: slice) -> Result:
     )
 
 
-def test_a_batch_equals_its_members(
-    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
-) -> None:
+def test_a_batch_equals_its_members(model: Model, bodies: Bodies) -> None:
     material, phase = bodies
     batch = model.simulate(material, phase, range(20))
     for i in range(len(material)):
@@ -52,7 +51,7 @@ def test_a_batch_equals_its_members(
         assert same(part(batch, one), model.simulate(material[one], phase[one], range(20)))
 
 
-def test_threads_give_the_same(model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]) -> None:
+def test_threads_give_the_same(model: Model, bodies: Bodies) -> None:
     material, phase = bodies
     alone = model.simulate(material, phase, range(20))
     with ThreadPoolExecutor(8) as pool:
@@ -60,9 +59,7 @@ def test_threads_give_the_same(model: Model, bodies: tuple[NDArray[np.uint8], ND
         assert all(same(alone, job.result()) for job in jobs)
 
 
-def test_sampling_more_changes_nothing(
-    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
-) -> None:
+def test_sampling_more_changes_nothing(model: Model, bodies: Bodies) -> None:
     every = model.simulate(*bodies, range(20))
     few = model.simulate(*bodies, [3, 17], ["face"])
     assert few.tracks.keys() == {"face"}
@@ -70,17 +67,13 @@ def test_sampling_more_changes_nothing(
     assert model.simulate(*bodies, [], []).tracks == {}
 
 
-def test_phases_of_cells_that_do_not_expand_do_not_matter(
-    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
-) -> None:
+def test_phases_of_cells_that_do_not_expand_do_not_matter(model: Model, bodies: Bodies) -> None:
     material, phase = bodies
     other = np.where(material == 3, phase, np.nan)
     assert same(model.simulate(material, phase, range(20)), model.simulate(material, other, range(20)))
 
 
-def test_sample_0_is_the_initial_state(
-    model: Model, bodies: tuple[NDArray[np.uint8], NDArray[np.float64]]
-) -> None:
+def test_sample_0_is_the_initial_state(model: Model, bodies: Bodies) -> None:
     material, phase = bodies
     start = model.simulate(material, phase, [0]).tracks["voxels"][:, 0]
     lattice = 0.05 * (np.moveaxis(np.indices(CANVAS), 0, -1) + 0.5)

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 import pytest
+from contracts import name_of
 
 from evoframe import ConfigurationError, Scores
 from evoframe.testing import AggregatorContract
@@ -67,7 +68,7 @@ class UnsortedMean(Median):
 
 class Product(Median):
     def aggregate(self, scores: Scores) -> float:
-        return math.prod(sorted(scores.tolist()))
+        return float(math.prod(sorted(scores.tolist())))
 
 
 class SortsInPlace(Median):
@@ -145,7 +146,7 @@ class UpsideDown(Median):
         (RefusesWithoutAWord(), COUNTS),
         (UpsideDown(), "test_the_domain_is_a_range"),
     ],
-    ids=lambda value: type(value).__name__ if isinstance(value, Median) else value,
+    ids=name_of,
 )
 def test_a_broken_aggregator_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(AggregatorContract, component, law)

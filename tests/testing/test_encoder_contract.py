@@ -1,9 +1,10 @@
 from collections.abc import Callable
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 import pytest
+from contracts import name_of
 from numpy.typing import NDArray
 
 from evoframe import Design, Network
@@ -85,7 +86,8 @@ class TypeByNetwork(Stripe):
 class Unclamped(Stripe):
     def colours(self, network: Network) -> NDArray[Any]:
         with np.errstate(over="ignore"):
-            return cast("NDArray[Any]", np.exp(network(POINTS)[:, 0]))
+            colours: NDArray[Any] = np.exp(network(POINTS)[:, 0])
+            return colours
 
 
 class Remembers(Stripe):
@@ -103,7 +105,7 @@ class ChangesTheBody(Stripe):
 
 class SinglePrecision(Stripe):
     def colours(self, network: Network) -> NDArray[Any]:
-        return cast("NDArray[Any]", network(POINTS.astype(np.float32))[:, 0])  # type: ignore[arg-type]
+        return network(POINTS.astype(np.float32))[:, 0]
 
 
 class PointByPoint(Stripe):
@@ -145,7 +147,7 @@ class NoInputs(Stripe):
         (Remembers(), SAME),
         (ChangesTheBody(), LEFT_ALONE),
     ],
-    ids=lambda value: type(value).__name__ if isinstance(value, Stripe) else value,
+    ids=name_of,
 )
 def test_a_broken_encoder_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(OnABody, component, law)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 import pytest
+from contracts import starting
 from numpy.typing import NDArray
 
 from evoframe import ConfigurationError, Member, Network
@@ -77,7 +78,7 @@ class Climbing:
         self.fitness = fitness.tolist()
 
     def members(self) -> Sequence[Member]:
-        fitness = self.fitness or [None] * len(self.population)
+        fitness: Sequence[float | None] = self.fitness or [None] * len(self.population)
         return [Member(genome["id"], f) for genome, f in zip(self.population, fitness, strict=True)]
 
     def genomes(self) -> Sequence[Any]:
@@ -141,7 +142,8 @@ class ReadsPythonsState(Climbing):
     """Draws nothing, but depends on what others have drawn."""
 
     def noise(self) -> NDArray[np.float64]:
-        return super().noise() + random.getstate()[1][1] % 1000
+        drawn: int = random.getstate()[1][1]
+        return super().noise() + drawn % 1000
 
 
 class SeedsOnRestore(Climbing):
@@ -302,7 +304,8 @@ class Unbounded(Climbing):
     def express(self, genome: Genome) -> Network:
         def network(points: NDArray[np.float64]) -> NDArray[np.float64]:
             with np.errstate(over="ignore"):
-                return np.exp(points @ np.array(genome["weights"]))
+                outputs: NDArray[np.float64] = np.exp(points @ np.array(genome["weights"]))
+                return outputs
 
         return network
 
@@ -316,7 +319,7 @@ class Flat(Climbing):
 class SinglePrecision(Climbing):
     def express(self, genome: Genome) -> Network:
         network = super().express(genome)
-        return lambda points: network(points).astype(np.float32)  # type: ignore[return-value]
+        return lambda points: network(points).astype(np.float32)
 
 
 class Recurrent(Climbing):
@@ -362,10 +365,6 @@ class NoDump:
     tell = Climbing.tell
 
 
-def evolver(run: type[Any]) -> Any:
-    return type(run.__name__, (Climber,), {"run": run})()
-
-
 @pytest.mark.parametrize(
     ("run", "law"),
     [
@@ -408,7 +407,7 @@ def evolver(run: type[Any]) -> Any:
     ],
 )
 def test_a_broken_run_is_caught(run: type[Any], law: str, breaks: Callable[..., None]) -> None:
-    breaks(EvolverContract, evolver(run), law)
+    breaks(EvolverContract, starting(run, Climber), law)
 
 
 @pytest.mark.parametrize(
@@ -423,7 +422,7 @@ def test_a_broken_run_is_caught(run: type[Any], law: str, breaks: Callable[..., 
 def test_what_is_no_json_is_caught(
     run: type[Any], law: str, error: type[Exception], breaks: Callable[..., None]
 ) -> None:
-    breaks(EvolverContract, evolver(run), law, error=error)
+    breaks(EvolverContract, starting(run, Climber), law, error=error)
 
 
 class RefusesWithAnotherError(Climber):

@@ -4,6 +4,7 @@ from typing import Any, ClassVar
 
 import attrs
 import pytest
+from contracts import starting
 
 from evoframe.testing import ExecutorContract
 
@@ -99,10 +100,6 @@ class Shared(Run):
         self.pool = self.pools[0]
 
 
-def executor(run: type[Any]) -> Any:
-    return type(run.__name__, (Pool,), {"run": run})()
-
-
 @pytest.mark.parametrize(
     ("run", "law", "error"),
     [
@@ -119,4 +116,4 @@ def executor(run: type[Any]) -> Any:
 def test_broken_workers_are_caught(
     run: type[Any], law: str, error: type[Exception], breaks: Callable[..., None]
 ) -> None:
-    breaks(ExecutorContract, executor(run), law, error=error)
+    breaks(ExecutorContract, starting(run, Pool), law, error=error)

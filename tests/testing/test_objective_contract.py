@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 import pytest
+from contracts import name_of
 
 from evoframe import Outcome, Record
 from evoframe.testing import ObjectiveContract
@@ -82,7 +83,7 @@ class Centres(Rise):
         (Counts(), SAME),
         (Centres(), LEFT_ALONE),
     ],
-    ids=lambda value: type(value).__name__ if isinstance(value, Rise) else value,
+    ids=name_of,
 )
 def test_a_broken_objective_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(ObjectiveContract, component, law)

@@ -1,12 +1,11 @@
 """The examples of ``docs/plugins.md`` do what the page says."""
 
 import re
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
+from processes import python
 
 import evoframe
 from evoframe import hookspecs, testing
@@ -19,8 +18,7 @@ TABLES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
 def test_the_plugin_passes_its_contract_tests(tmp_path: Path) -> None:
     (tmp_path / "evoframe_trimmed.py").write_text(PLUGIN)
     (tmp_path / "test_trimmed.py").write_text(TESTS)
-    command = [sys.executable, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", str(tmp_path)]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    ended = python("-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", tmp_path)
     assert ended.returncode == 0, ended.stdout
     assert " passed" in ended.stdout
 

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 import pytest
+from contracts import name_of
 from numpy.typing import NDArray
 
 from evoframe import ConfigurationError, Design, Outcome, Record
@@ -60,7 +61,8 @@ class Spring:
         steps = self.kept(record)[: 0 if diverged_at == 0 else None]
         tracks = {"weight": positions[steps], "middle": positions[steps] / 2}
         recorded = {name: tracks[name] for name in record.tracks}
-        return Outcome(steps, steps * STEP, recorded, diverged_at)
+        times = steps.astype(np.float64) * STEP
+        return Outcome(steps, times, recorded, diverged_at)
 
     def positions(self, design: Design) -> tuple[NDArray[np.float64], int | None]:
         stiffness, damping = design.roles["spring"][:2]
@@ -269,7 +271,7 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (KeyWithoutDamping(), EQUAL_KEYS),
         (KeyWithoutRecord(), EQUAL_KEYS),
     ],
-    ids=lambda value: type(value).__name__ if isinstance(value, Spring) else value,
+    ids=name_of,
 )
 def test_a_broken_simulator_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(SpringContract, component, law)

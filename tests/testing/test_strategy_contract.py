@@ -5,6 +5,7 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+from contracts import name_of
 
 from evoframe import ConfigurationError, Member
 from evoframe.testing import CollaborationStrategyContract
@@ -148,7 +149,7 @@ class RefusesWithAnotherError(Two):
         (AcceptsNobody(), REFUSALS),
         (RefusesWithoutNumbers(), REFUSALS),
     ],
-    ids=lambda value: type(value).__name__ if isinstance(value, Two) else value,
+    ids=name_of,
 )
 def test_a_broken_strategy_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(CollaborationStrategyContract, component, law)

@@ -123,4 +123,5 @@ def _refusing_damage(what: str) -> Iterator[None]:
         with warnings.catch_warnings(action="ignore"):  # of Python about headers that are odd literals
             yield
     except _DAMAGE as error:
-        raise InputError(f"{what}: {error or type(error).__name__}") from error
+        detail = " ".join(str(error).split())[:200]  # numpy may quote a whole header
+        raise InputError(f"{what}: {detail or type(error).__name__}") from error

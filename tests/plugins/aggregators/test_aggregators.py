@@ -30,7 +30,8 @@ def scores_of(score: st.SearchStrategy[float], counts: Iterable[int] = range(1, 
 
 
 def aggregate(component: Any, scores: Any) -> float:
-    return component.aggregate(np.array(scores, dtype=np.float64))
+    fitness: float = component.aggregate(np.array(scores, dtype=np.float64))
+    return fitness
 
 
 class TestArithmeticMean(AggregatorContract):

@@ -2,6 +2,7 @@ import math
 from typing import Any
 
 import numpy as np
+from drawing import network_of, point_of
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -47,18 +48,11 @@ def test_the_declarations_are_the_papers() -> None:
 
 
 @given(BODIES, st.booleans(), SEEDS, SCALES)
-def test_offsets_are_those_drawn_voxel_by_voxel(
-    network: Any, body: Any, normalized: bool, seed: int, scale: float
-) -> None:
-    drawing = network(4, 1, seed, scale)
+def test_offsets_are_those_drawn_voxel_by_voxel(body: Any, normalized: bool, seed: int, scale: float) -> None:
+    drawing = network_of(4, 1, seed, scale)
     expected = np.zeros(body.shape)
     for index in zip(*np.nonzero(body == 3), strict=True):
-        point = [float(i) for i in index]
-        if normalized:
-            point = [
-                np.linspace(-1, 1, n)[i] if n > 1 else 0.0 for i, n in zip(index, body.shape, strict=True)
-            ]
-        offset = drawing(np.array([[*point, 3.0]]))[0, 0]
+        offset = drawing(np.array([[*point_of(index, body.shape, normalized), 3.0]]))[0, 0]
         expected[index] = min(max(offset, -2 * math.pi), 2 * math.pi)
     offsets = offsets_of(body, drawing, normalized_coordinates=normalized)
     assert offsets.dtype == np.float64
@@ -67,16 +61,14 @@ def test_offsets_are_those_drawn_voxel_by_voxel(
 
 
 @given(BODIES, SEEDS, SCALES)
-def test_offsets_are_within_2_pi_and_0_where_nothing_contracts(
-    network: Any, body: Any, seed: int, scale: float
-) -> None:
-    offsets = offsets_of(body, network(4, 1, seed, scale))
+def test_offsets_are_within_2_pi_and_0_where_nothing_contracts(body: Any, seed: int, scale: float) -> None:
+    offsets = offsets_of(body, network_of(4, 1, seed, scale))
     assert (np.abs(offsets) <= 2 * math.pi).all()
     assert (offsets[body != 3] == 0.0).all()
 
 
-def test_the_same_network_draws_another_controller_on_another_body(network: Any) -> None:
-    drawing = network(4, 1, 0, 0.1)
+def test_the_same_network_draws_another_controller_on_another_body() -> None:
+    drawing = network_of(4, 1, 0, 0.1)
     one, other = np.full((3, 3, 3), 3, np.uint8), np.full((3, 3, 3), 3, np.uint8)
     other[1] = 1
     offsets = offsets_of(one, drawing)
@@ -84,8 +76,8 @@ def test_the_same_network_draws_another_controller_on_another_body(network: Any)
     assert (offsets_of(other, drawing)[1] == 0).all()
 
 
-def test_a_body_without_contractile_voxels_has_no_offsets(network: Any) -> None:
-    assert not offsets_of(np.ones((2, 2, 2), np.uint8), network(4, 1, 0, 1.0)).any()
+def test_a_body_without_contractile_voxels_has_no_offsets() -> None:
+    assert not offsets_of(np.ones((2, 2, 2), np.uint8), network_of(4, 1, 0, 1.0)).any()
 
 
 def test_the_network_sees_raw_coordinates_and_the_material_code() -> None:

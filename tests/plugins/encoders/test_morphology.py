@@ -2,6 +2,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawing import network_of, point_of
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -38,11 +39,7 @@ def one_by_one(encoder: CppnMorphology, network: Any) -> Any:
         if encoder.enclosure and outermost:
             body[index] = 1
             continue
-        point = [float(i) for i in index]
-        if encoder.normalized_coordinates:
-            point = [
-                np.linspace(-1, 1, n)[i] if n > 1 else 0.0 for i, n in zip(index, encoder.canvas, strict=True)
-            ]
+        point = point_of(index, encoder.canvas, encoder.normalized_coordinates)
         presence, material = network(np.array([point]))[0]
         if abs(presence) >= encoder.threshold:
             body[index] = 3 if abs(material) >= encoder.threshold else 1
@@ -66,18 +63,14 @@ ENCODERS = st.builds(
 
 
 @given(ENCODERS, SEEDS, SCALES)
-def test_a_body_is_the_one_drawn_voxel_by_voxel(
-    network: Any, encoder: CppnMorphology, seed: int, scale: float
-) -> None:
-    drawing = network(3, 2, seed, scale)
+def test_a_body_is_the_one_drawn_voxel_by_voxel(encoder: CppnMorphology, seed: int, scale: float) -> None:
+    drawing = network_of(3, 2, seed, scale)
     assert body_of(encoder, drawing).tolist() == one_by_one(encoder, drawing).tolist()
 
 
 @given(CANVASES, SEEDS, SCALES)
-def test_a_body_has_the_canvas_the_codes_and_the_enclosure(
-    network: Any, canvas: Any, seed: int, scale: float
-) -> None:
-    body = body_of(CppnMorphology(canvas), network(3, 2, seed, scale))
+def test_a_body_has_the_canvas_the_codes_and_the_enclosure(canvas: Any, seed: int, scale: float) -> None:
+    body = body_of(CppnMorphology(canvas), network_of(3, 2, seed, scale))
     assert body.shape == canvas
     assert body.dtype == np.uint8
     assert not body.flags.writeable

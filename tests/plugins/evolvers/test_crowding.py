@@ -64,7 +64,7 @@ def play(run: Any, turns: int, seed: int = 0) -> None:
 @pytest.mark.parametrize("least", [1, 2])
 @pytest.mark.parametrize("lasting", [{}, {"species_elitism": 0, "max_stagnation": 1}])
 def test_the_size_is_kept_whatever_happens(
-    size: int, threshold: float, least: int, lasting: dict[str, int]
+    size: int, threshold: float, least: int, lasting: dict[str, Any]
 ) -> None:
     evolver = Neat(
         compatibility_threshold=threshold, elitism=min(2, size - 1), min_species_size=least, **lasting
@@ -107,7 +107,7 @@ def test_without_elitism_none_comes_by_crowding() -> None:
     assert not before & {genome.key for genome in run.ask()}
 
 
-def stagnation_of(*fitness: float, places: int, **rules: int) -> Any:
+def stagnation_of(*fitness: float, places: int, **rules: Any) -> Any:
     """Return the stagnation, and species with the keys 1, 2, ... of one member each."""
     config = Neat(**rules).start(3, 2, 8, np.random.default_rng(0))._pool.config
     stagnation = RoomyStagnation(config.stagnation_config, ReporterSet(), config.reproduction_config)

@@ -4,13 +4,13 @@ import json
 import os
 import pickle
 import random
-import subprocess
 import sys
 from typing import Any
 
 import neat
 import numpy as np
 import pytest
+from processes import python
 
 from evoframe.testing import EvolverContract
 from evoframe_evolvers import Neat, evoframe_evolvers
@@ -219,10 +219,8 @@ for evolver in (Neat(node_add=0.8), RandomSearch(mutations=9)):
 
 def test_the_hash_seed_of_python_does_not_matter() -> None:
     def outcome(hash_seed: str) -> str:
-        environment = {**os.environ, "PYTHONHASHSEED": hash_seed, "PYTHONPATH": os.pathsep.join(sys.path)}
-        done = subprocess.run(
-            [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True
-        )
+        done = python("-c", SCRIPT, PYTHONHASHSEED=hash_seed, PYTHONPATH=os.pathsep.join(sys.path))
+        assert done.returncode == 0, done.stderr
         return done.stdout
 
     assert outcome("0") == outcome("1") == outcome("31337")
@@ -233,7 +231,8 @@ def test_two_populations_interleaved_equal_each_alone_and_leave_the_global_rando
     random.seed(7)
     expected = [random.random() for _ in range(30)]
     random.seed(7)
-    runs, histories, drawn = {1: start(1), 2: start(2)}, {1: [], 2: []}, []
+    runs, drawn = {1: start(1), 2: start(2)}, []
+    histories: dict[int, list[Any]] = {1: [], 2: []}
     for _ in range(15):
         for seed, run in runs.items():
             histories[seed].append(turn(run))

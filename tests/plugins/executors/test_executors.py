@@ -128,7 +128,7 @@ def test_after_a_failure_nothing_goes_on(two_threads: ExecutorRun) -> None:
 
 
 def test_a_failing_generator_of_items_begins_nothing(two_threads: ExecutorRun) -> None:
-    begun = []
+    begun: list[int] = []
 
     def items() -> Iterator[int]:
         yield 1

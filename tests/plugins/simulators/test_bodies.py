@@ -142,8 +142,12 @@ def renamed(before: bytes, after: bytes) -> Callable[[bytes], bytes]:
         ),
         pytest.param(bodies(material=header("{")), "material is no array: ", id="half a header"),
         pytest.param(bodies(material=header("3")), "is no array: Header is not a dict", id="no dictionary"),
-        pytest.param(bodies(material=header("(" * 5000)), "material is no array: ", id="nested brackets"),
-        pytest.param(bodies(material=header("-" * 9000 + "1")), "material is no array: ", id="nested signs"),
+        pytest.param(
+            bodies(material=header("(" * 5000)), "material is no array: .{3,200}$", id="nested brackets"
+        ),
+        pytest.param(
+            bodies(material=header("-" * 9000 + "1")), "material is no array: .{3,200}$", id="nested signs"
+        ),
         pytest.param(bodies(material=header(" " * 20000)), "is no array: EOF", id="a long header"),
         pytest.param(
             bodies(material=b"\x93NUMPY\2\0\xff\xff\xff\xff"), "is no array: EOF", id="a header of 4 GB"
@@ -263,7 +267,8 @@ def test_each_way_to_write_an_array_is_read(
     )
     [(label, codes, cycles)] = read_bodies(path)
     assert label == "given.npz"
-    assert (codes.dtype, cycles.dtype) == (np.uint8, np.float64)
+    assert codes.dtype == np.uint8
+    assert cycles.dtype == np.float64
     assert (codes == 3).all()
     assert (cycles == phase).all()
 

@@ -44,7 +44,8 @@ def population(*fitness: float | None, diverged: tuple[int, ...] = ()) -> list[M
 
 
 def chosen(strategy: Any, members: list[Member], seed: int = 0) -> list[int]:
-    return strategy.select(members, np.random.default_rng(seed)).tolist()
+    indices: list[int] = strategy.select(members, np.random.default_rng(seed)).tolist()
+    return indices
 
 
 def test_the_names_are_those_of_the_configuration() -> None:

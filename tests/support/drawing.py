@@ -1,16 +1,16 @@
 """Networks of all kinds, without an evolver: an encoder never sees a genome."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
 
-def _network(inputs: int, outputs: int, seed: int, scale: float) -> Callable[[Points], Points]:
+def network_of(inputs: int, outputs: int, seed: int, scale: float) -> Callable[[Points], Points]:
     """Return a network that adds in the same order for one point as for many."""
     rng = np.random.default_rng(seed)
     weights, bias = rng.normal(size=(inputs, outputs)), rng.normal(size=outputs)
@@ -18,12 +18,14 @@ def _network(inputs: int, outputs: int, seed: int, scale: float) -> Callable[[Po
     def network(points: Points) -> Points:
         assert points.dtype == np.float64
         assert points.shape[1:] == (inputs,)
-        total = bias + sum(points[:, i : i + 1] * weights[i] for i in range(inputs))
+        total: Points = bias + sum(points[:, i : i + 1] * weights[i] for i in range(inputs))
         return scale * total
 
     return network
 
 
-@pytest.fixture(scope="session")
-def network() -> Any:
-    return _network
+def point_of(index: tuple[int, ...], canvas: tuple[int, ...], normalized: bool) -> list[float]:
+    """Return where a network is asked about one voxel."""
+    if not normalized:
+        return [float(i) for i in index]
+    return [float(np.linspace(-1, 1, n)[i]) if n > 1 else 0.0 for i, n in zip(index, canvas, strict=True)]
