@@ -134,7 +134,8 @@ def test_a_local_module_is_a_plugin_with_components_and_commands(evoframe: Evofr
         "-p", "mine.py", "run", "quick", "--set", "aggregator=lowest", "--set", "run.generations=1"
     )
     assert ran.returncode == 0, ran.stderr
-    missing = evoframe("-p", "theirs", "run", "quick")
+    assert evoframe("config", "show", "-p", "mine", "--set", "aggregator=lowest").returncode == 0
+    missing = evoframe("run", "quick", "--plugin", "theirs")
     assert missing.returncode == 2
     assert "plugin module 'theirs' cannot be used: ModuleNotFoundError" in missing.stderr
 
@@ -148,8 +149,10 @@ class TestRun:
         assert "runs/quick-4" in ran.stdout
         assert re.search(r"turn 10/10 .* morphology \S+ .* controller \S+ .* sim/s .*% cached", ran.stderr)
 
-    def test_quiet_says_only_where_the_run_is(self, evoframe: Evoframe) -> None:
-        ran = evoframe("-q", "run", "quick", "--set", "run.generations=0")
+    @pytest.mark.parametrize("before", [True, False])
+    def test_quiet_says_only_where_the_run_is(self, evoframe: Evoframe, before: bool) -> None:
+        command = ["run", "quick", "--set", "run.generations=0"]
+        ran = evoframe("-q", *command) if before else evoframe(*command, "--quiet")
         assert (ran.stdout, ran.stderr) == ("runs/quick-1\n", "")
 
     def test_no_colour_where_there_is_no_terminal_or_none_is_wanted(self, evoframe: Evoframe) -> None:

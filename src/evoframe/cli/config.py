@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from evoframe.cli.context import configuration_argument, plugins_of, set_option
+from evoframe.cli.context import common_options, configuration_argument, plugins_of, set_option
 from evoframe.resolve import load_config
 
 __all__ = ["config"]
@@ -25,6 +25,7 @@ Examples:
 @config.command(epilog=_EPILOG)
 @configuration_argument
 @set_option
+@common_options
 @click.pass_context
 def show(ctx: click.Context, source: str, overrides: tuple[str, ...]) -> None:
     """Print a configuration with every default written out, after checking it."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import logging
+import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+import attrs
 import click
 from click.shell_completion import CompletionItem
 
@@ -12,18 +15,100 @@ from evoframe.discovery import discover
 from evoframe.layers import Layer, layer_of, preset_names
 from evoframe.plugins import Plugins
 
-__all__ = ["configuration_argument", "plugins_of", "set_option", "workers_option"]
+__all__ = [
+    "common_options",
+    "configuration_argument",
+    "is_quiet",
+    "plugins_of",
+    "set_option",
+    "workers_option",
+]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+@attrs.define
+class _Common:
+    """What the common options say, wherever on the command line they stand.
+
+    Attributes:
+        modules: Local plugins.
+        verbosity: How much is told; below 0: only what was asked for, and errors.
+        plugins: What was discovered, once somebody asked for it.
+    """
+
+    modules: list[str] = attrs.field(factory=list)
+    verbosity: int = 0
+    plugins: Plugins | None = None
+
+
+class _Handler(logging.Handler):
+    """Writes to whatever standard error is at the time, which a progress bar takes over while it is shown."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        sys.stderr.write(f"{self.format(record)}\n")
+
+
+def _common(ctx: click.Context) -> _Common:
+    return ctx.find_root().ensure_object(_Common)
+
+
+def _add_modules(ctx: click.Context, _: click.Parameter, modules: tuple[str, ...]) -> None:
+    _common(ctx).modules += modules
+
+
+def _speak(ctx: click.Context, parameter: click.Parameter, value: int) -> None:
+    if value:
+        _common(ctx).verbosity = -1 if parameter.name == "quiet" else value
+    level = logging.WARNING - 10 * min(_common(ctx).verbosity, 2)
+    logging.basicConfig(level=level, handlers=[_Handler()], format="%(name)s: %(message)s", force=True)
+
+
+def common_options(function: F) -> F:
+    """Add ``-v``, ``-q`` and ``-p``, which may stand before or after the name of a command."""
+    for option in (
+        click.option(
+            "-p",
+            "--plugin",
+            multiple=True,
+            is_eager=True,  # before --help, which lists the commands of plugins too
+            expose_value=False,
+            callback=_add_modules,
+            metavar="MODULE",
+            help="Use a plugin that is one local module: an importable name or a .py file. Repeatable.",
+        ),
+        click.option(
+            "-q",
+            "--quiet",
+            is_flag=True,
+            expose_value=False,
+            callback=_speak,
+            help="Say only what was asked for.",
+        ),
+        click.option(
+            "-v",
+            "--verbose",
+            count=True,
+            expose_value=False,
+            callback=_speak,
+            help="Say more; twice: everything.",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+def is_quiet(ctx: click.Context) -> bool:
+    """Return whether only what was asked for shall be said."""
+    return _common(ctx).verbosity < 0
+
+
 def plugins_of(ctx: click.Context) -> Plugins:
     """Return the plugins of this invocation, discovered once."""
-    root = ctx.find_root()
-    if root.obj is None:
-        root.obj = discover(root.params.get("plugin") or ())
-    found: Plugins = root.obj
-    return found
+    common = _common(ctx)
+    if common.plugins is None:
+        common.plugins = discover(common.modules)
+    return common.plugins
 
 
 def _complete_preset(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:

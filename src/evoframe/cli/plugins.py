@@ -9,7 +9,7 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from evoframe.cli.context import plugins_of
+from evoframe.cli.context import common_options, plugins_of
 from evoframe.plugins import Plugins
 
 __all__ = ["plugins"]
@@ -22,6 +22,7 @@ def plugins() -> None:
 
 @plugins.command(name="list", epilog="\b\nExamples:\n  evoframe plugins list\n  evoframe plugins list --json")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@common_options
 @click.pass_context
 def list_(ctx: click.Context, as_json: bool) -> None:
     """List the components that are installed, who offers them, and the plugins that were skipped."""

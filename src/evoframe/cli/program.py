@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import sys
 import warnings
 from typing import Any
@@ -12,7 +11,7 @@ import click
 from evoframe._version import __version__
 from evoframe.cli.completion import completion
 from evoframe.cli.config import config
-from evoframe.cli.context import plugins_of
+from evoframe.cli.context import common_options, plugins_of
 from evoframe.cli.plugins import plugins
 from evoframe.cli.run import run
 from evoframe.cli.simulate import simulate
@@ -79,36 +78,17 @@ Examples:
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 @click.version_option(__version__, prog_name="evoframe", message="%(prog)s %(version)s")
-@click.option("-v", "--verbose", count=True, help="Say more; twice: everything.")
-@click.option("-q", "--quiet", is_flag=True, help="Say only what was asked for, and errors.")
-@click.option(
-    "-p",
-    "plugin",
-    multiple=True,
-    is_eager=True,  # before --help, which lists the commands of plugins too
-    metavar="MODULE",
-    help="Use a plugin that is one local module: an importable name or a .py file. Repeatable.",
-)
-@click.pass_context
-def cli(ctx: click.Context, verbose: int, quiet: bool, plugin: tuple[str, ...]) -> None:  # noqa: ARG001
+@common_options
+def cli() -> None:
     """Cooperative coevolution of soft robots.
 
     Two populations of networks, one of bodies and one of controllers, are evolved together: each individual
     is judged by how well it does with partners from the other population.
     """
-    level = logging.ERROR if quiet else logging.WARNING - 10 * min(verbose, 2)
-    logging.basicConfig(level=level, handlers=[_Handler()], format="%(name)s: %(message)s", force=True)
 
 
 for command in (completion, config, plugins, run, simulate):
     cli.add_command(command)
-
-
-class _Handler(logging.Handler):
-    """Writes to whatever standard error is at the time, which a progress bar takes over while it is shown."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        sys.stderr.write(f"{self.format(record)}\n")
 
 
 def main() -> None:

@@ -12,7 +12,14 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from evoframe.cli.context import configuration_argument, plugins_of, set_option, workers_option
+from evoframe.cli.context import (
+    common_options,
+    configuration_argument,
+    is_quiet,
+    plugins_of,
+    set_option,
+    workers_option,
+)
 from evoframe.cli.progress import Progress
 from evoframe.config import RunConfig
 from evoframe.layers import Layer, layer_of
@@ -44,6 +51,7 @@ Examples:
     help="The run's directory; by default runs/<preset>-<seed>.",
 )
 @workers_option
+@common_options
 @click.pass_context
 def run(
     ctx: click.Context,
@@ -60,15 +68,14 @@ def run(
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins_of(ctx))
     directory = out or default_directory(config)
-    quiet = bool(ctx.find_root().params["quiet"])
-    if not quiet:
+    if not is_quiet(ctx):
         config.discovered.manager.register(Progress(), name="evoframe:progress")
     with _stop_on_interrupt() as stop:
         completed = _completed(config, directory, stop)
     if not completed:
         click.echo(f"Interrupted; all turns up to here are saved in {directory}", err=True)
         ctx.exit(_INTERRUPTED)
-    if quiet:
+    if is_quiet(ctx):
         click.echo(directory)
     else:
         Console().print(_summary(load_run(directory)))

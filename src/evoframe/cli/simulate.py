@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from evoframe.champion import read_champion
-from evoframe.cli.context import plugins_of, set_option, workers_option
+from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.evaluation import Evaluator, Score
@@ -54,6 +54,7 @@ class _Job:
     help="Write where the points of one body are after every step.",
 )
 @workers_option
+@common_options
 @click.pass_context
 def simulate(
     ctx: click.Context,
