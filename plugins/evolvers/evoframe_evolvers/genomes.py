@@ -56,7 +56,7 @@ class GenePool:
     """Where the genomes of one population come from.
 
     It owns neat-python's ``Config`` of the population, the counters that neat-python's objects draw on, and
-    the random stream. The config must not be pickled or copied, for that advances its node counter: save
+    the random stream. The config must not be serialized or copied, for that advances its node counter: save
     :meth:`state` instead.
 
     Attributes:
@@ -88,7 +88,7 @@ class GenePool:
         self.config.genome_config.innovation_tracker = self.tracker
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError("a population cannot be copied or pickled; use state() and restore()")
+        raise TypeError("a population cannot be copied or serialized; use state() and restore()")
 
     def express(self, genome: Any) -> CppnNetwork:
         """Return the network that *genome* encodes."""

@@ -1,4 +1,4 @@
-"""Arrays in ``.npz`` files from anyone: looked at before they are unpacked, and never a pickle."""
+"""Arrays in ``.npz`` files from anyone: looked at before they are unpacked."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class PackedArray:
             InputError: It is damaged.
         """
         with _refusing_damage(f"{self.name} cannot be unpacked"), self._archive.open(self._entry) as file:
-            array: NDArray[Any] = npy.read_array(file, allow_pickle=False)
+            array: NDArray[Any] = npy.read_array(file)  # which refuses objects
             return array
 
 

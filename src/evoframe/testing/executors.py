@@ -17,7 +17,7 @@ __all__ = ["ExecutorContract"]
 class ExecutorContract(ComponentContract[Executor]):
     """The laws of an :class:`~evoframe.Executor` and of the workers that it starts.
 
-    The functions that are mapped can be pickled, for executors that use other processes.
+    The functions that are mapped stand in a module, for executors that use other processes.
     """
 
     protocol = Executor
