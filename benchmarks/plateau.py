@@ -13,6 +13,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -38,12 +39,15 @@ def run_one(name: str, seed: int, out: Path) -> Path:
     """Run a configuration in a process of its own, unless that was done before."""
     preset, settings = CONFIGURATIONS[name]
     directory = out / f"{name.replace(' ', '-').replace(',', '')}-{seed}"
-    if not directory.exists() or not evoframe.load_run(directory).summary:
+    if not directory.exists():
+        unfinished = directory.with_suffix(".unfinished")
+        shutil.rmtree(unfinished, ignore_errors=True)
         options = [option for setting in settings for option in ("--set", setting)]
-        command = ["-q", "run", preset, "--seed", str(seed), "--workers", "1", "--out", str(directory)]
+        command = ["-q", "run", preset, "--seed", str(seed), "--workers", "1", "--out", str(unfinished)]
         subprocess.run(
             [sys.executable, "-m", "evoframe", *command, *options], check=True, stdout=subprocess.DEVNULL
         )
+        unfinished.rename(directory)
     return directory
 
 
@@ -88,7 +92,20 @@ def describe(name: str, runs: list[evoframe.Run], budget: float) -> dict[str, An
         "share above 0.006 m": sum(value > THRESHOLD for value in best) / len(best),
         "median simulations": statistics.median(simulations(run) for run in runs),
         "median of the best within the budget": statistics.median(best_within(run, budget) for run in runs),
+        "first turn with 0.005 m, of each run": [first_turn_with(run, 0.005) for run in runs],
+        "empty share of the champion's interior, of each run": [empty_share(run) for run in runs],
     }
+
+
+def first_turn_with(finished: evoframe.Run, score: float) -> int | None:
+    """Return the turn in which a pair first reached a score, if any did."""
+    return next((row["turn"] for row in finished.table("best_pairs") if row["score"] >= score), None)
+
+
+def empty_share(finished: evoframe.Run) -> float:
+    """Return the share of the interior of the champion's body that is empty."""
+    interior = finished.champion.design.roles["morphology"][1:-1, 1:-1, 1:-1]
+    return round(float((interior == 0).mean()), 3)
 
 
 def simulations(finished: evoframe.Run) -> int:
