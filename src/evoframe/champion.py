@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.errors import InputError
+from evoframe.errors import InputError, RunError
 from evoframe.values import BestPair, Design
 
 __all__ = [
@@ -26,6 +26,10 @@ __all__ = [
 FORMAT = 1
 """Version of the champion's document and of the run directory."""
 
+_DTYPES = (
+    *("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"),
+    *("float16", "float32", "float64"),
+)
 _CHAMPION_KEYS = {"format", "score", "simulation", "design"}
 
 
@@ -43,7 +47,14 @@ def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str
 
 
 def design_to_json(design: Design) -> dict[str, Any]:
-    """Return a design as JSON values, exact to the last bit."""
+    """Return a design as JSON values, exact to the last bit.
+
+    Raises:
+        RunError: A role is no array of finite numbers.
+    """
+    for role, array in design.roles.items():
+        if array.dtype.name not in _DTYPES or not np.isfinite(array).all():
+            raise RunError(f"the design's role '{role}' is no array of finite numbers, but {array.dtype}")
     return {
         role: {"dtype": array.dtype.name, "shape": list(array.shape), "values": array.ravel().tolist()}
         for role, array in design.roles.items()
@@ -108,13 +119,16 @@ def _parsed(text: str) -> Any:
 
 def _array_from_json(role: str, given: Any) -> NDArray[Any]:
     """Return an array, exactly as it is written: nothing is rounded, wrapped or guessed."""
-    types: dict[Any, type[np.generic]] = {"uint8": np.uint8, "int64": np.int64, "float64": np.float64}
-    dtype, shape, values = given["dtype"], given["shape"], given["values"]
-    if dtype not in types:
-        raise ValueError(f"{role}: unknown dtype {dtype!r}")
-    kind = float if dtype == "float64" else int
+    name, shape, values = given["dtype"], given["shape"], given["values"]
+    if name not in _DTYPES:
+        raise ValueError(f"{role}: unknown dtype {name!r}; known: {', '.join(_DTYPES)}")
+    dtype = np.dtype(name)
+    kind = {"b": bool, "f": float}.get(dtype.kind, int)
     if not all(type(value) is kind for value in values):
-        raise ValueError(f"{role}: expected values of type {dtype}")
+        raise ValueError(f"{role}: expected values of type {name}")
     if not all(type(length) is int and length >= 0 for length in shape):
         raise ValueError(f"{role}: expected the lengths of axes, found the shape {shape}")
-    return np.array(values, dtype=types[dtype]).reshape(shape)
+    array = np.array(values, dtype=dtype)
+    if array.tolist() != values:
+        raise ValueError(f"{role}: {name} cannot hold the values")
+    return array.reshape(shape)

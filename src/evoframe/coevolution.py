@@ -10,6 +10,7 @@ from typing import Any, Self, TypeAlias
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from evoframe.errors import RunError
 from evoframe.evaluation import Evaluator, Score
@@ -140,18 +141,18 @@ class Coevolution:
         """Return the positions of the collaborators from each population but one.
 
         Raises:
-            RunError: The strategy chose what is not there, or the same twice.
+            RunError: The strategy chose what is not there, the same twice, or not as many as it declared.
         """
         chosen = []
         for other in (other for i, other in enumerate(self.populations) if i != index):
-            selected = self.strategy.select(other.members, self.populations[index].rng)
-            positions = np.asarray(selected).tolist()
-            if sorted(set(positions) & set(range(len(other.members)))) != sorted(positions):
+            size = self.strategy.size(len(other.members))
+            selected = np.asarray(self.strategy.select(other.members, self.populations[index].rng))
+            if not _are_positions(selected, size, len(other.members)):
                 raise RunError(
-                    f"the collaboration strategy {_name(self.strategy)} chose {positions} "
-                    f"of the {len(other.members)} members of '{other.name}'"
+                    f"the collaboration strategy {type(self.strategy).__name__} chose {selected.tolist()}, "
+                    f"not {size} of the {len(other.members)} members of '{other.name}'"
                 )
-            chosen.append(positions)
+            chosen.append(selected.tolist())
         return chosen
 
     def _meetings(self, index: int, teams: Sequence[tuple[int, ...]]) -> list[Meeting]:
@@ -247,5 +248,11 @@ def _fitness(row: Sequence[float | None], fold: Fold) -> float | None:
     return float(fitness)
 
 
-def _name(component: object) -> str:
-    return type(component).__name__
+def _are_positions(chosen: NDArray[Any], size: int, members: int) -> bool:
+    """Return whether these are so many different positions among so many members."""
+    return (
+        chosen.shape == (size,)
+        and np.issubdtype(chosen.dtype, np.integer)
+        and len(np.unique(chosen)) == size
+        and bool(((chosen >= 0) & (chosen < members)).all())
+    )

@@ -98,6 +98,8 @@ def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> La
     Raises:
         ConfigurationError: Something cannot be read; says what and where.
     """
+    if isinstance(overrides, str):
+        raise TypeError("overrides are a list of strings, not one string")
     on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
     layers = [*_chain(str(source), Path(), ()), *on_top]
     return Layers(tuple(Layer(layer.origin, _with_component_tables(layer)) for layer in layers))

@@ -199,7 +199,7 @@ class Simulator(Protocol):
 class Objective(Protocol):
     """Turns the outcome of a simulation into a score, which is maximised.
 
-    Law: finite for every outcome that did not diverge.
+    Law: finite for every outcome that did not diverge. An objective may also have a ``unit``, such as ``m``.
     """
 
     @property

@@ -42,6 +42,8 @@ def load_config(
     Raises:
         ConfigurationError: With all faults that were found, each with its file and key.
     """
+    if not isinstance(source, str | Path):
+        raise TypeError(f"a configuration is named by a preset or a file, not by {type(source).__name__}")
     layers = read_layers(source, overrides)
     tree = layers.merged()
     reading = _Reading(tree)

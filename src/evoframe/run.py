@@ -10,12 +10,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 import tomli_w
 
 from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
+from evoframe.errors import InputError
 from evoframe.evaluation import Evaluator
 from evoframe.layers import Tree, layer_of
 from evoframe.loading import Run, load_run
@@ -29,7 +31,7 @@ from evoframe.values import Turn
 
 _log = logging.getLogger(__name__)
 
-__all__ = ["assemble", "default_directory", "execute", "run"]
+__all__ = ["Execution", "assemble", "evaluator_of", "prepare", "run"]
 
 
 def run(
@@ -62,17 +64,17 @@ def run(
         RunError: The run cannot go on; what was saved stays.
     """
     if isinstance(config, RunConfig):
-        if settings or seed is not None or workers is not None:
-            raise TypeError("a configuration is complete; give its settings to load_config")
+        if settings or any(given is not None for given in (seed, workers, plugins)):
+            raise TypeError("a configuration is complete; give settings and plugins to load_config")
     else:
         named = {**settings, "run.seed": seed, "executor.workers": workers}
         overrides = [
             layer_of(f"{key}={value!r}", key, value) for key, value in named.items() if value is not None
         ]
         config = load_config(config, overrides=overrides, plugins=plugins)
-    directory = Path(out) if out is not None else default_directory(config)
-    execute(config, directory)
-    return load_run(directory)
+    execution = prepare(config, None if out is None else Path(out))
+    execution.play(Observers(config.discovered.manager))
+    return load_run(execution.directory)
 
 
 def assemble(config: RunConfig) -> Coevolution:
@@ -95,52 +97,104 @@ def assemble(config: RunConfig) -> Coevolution:
         populations=populations,
         strategy=config.collaboration.component,
         aggregator=config.aggregator.component,
-        evaluator=Evaluator(
-            config.simulator.component,
-            config.objective.component,
-            config.executor.component.start(),
-        ),
+        evaluator=evaluator_of(config),
         generations=config.run.generations,
     )
 
 
-def default_directory(config: RunConfig) -> Path:
-    """Return ``runs/<label>-<seed>``, with a counter if that exists."""
-    base = Path("runs") / f"{config.label}-{config.run.seed}"
-    counted = (base.with_name(f"{base.name}-{number}") for number in itertools.count(2))
-    return next(path for path in itertools.chain([base], counted) if not path.exists())
+def evaluator_of(config: RunConfig) -> Evaluator:
+    """Return what scores designs as a configuration says, its workers ready."""
+    return Evaluator(
+        config.simulator.component, config.objective.component, config.executor.component.start()
+    )
 
 
-def execute(
-    config: RunConfig,
-    directory: Path,
-    observers: Observers | None = None,
-    stop: Callable[[], bool] = lambda: False,
-) -> bool:
-    """Run a configuration into a directory.
+@attrs.frozen
+class Execution:
+    """A run that is about to begin: all its components have started, and its directory is its own.
+
+    Attributes:
+        config: What is run.
+        directory: Where to.
+    """
+
+    config: RunConfig
+    directory: Path
+    _coevolution: Coevolution
+    _store: Store
+
+    def play(self, observers: Observers, stop: Callable[[], bool] = lambda: False) -> bool:
+        """Run to the end, once.
+
+        Args:
+            observers: Who is told.
+            stop: Asked after every turn whether to stop there.
+
+        Returns:
+            Whether the run was completed.
+
+        Raises:
+            RunError: The run cannot go on; what was saved stays.
+        """
+        completed = False
+        with contextlib.ExitStack() as stack:
+            stack.callback(self._store.close)
+            stack.enter_context(self._coevolution)
+            self._store.save_config(self.config.to_toml() + _provenance(self.config))
+            observers.tell("evoframe_run_started", config=self.config, directory=self.directory)
+            try:
+                completed = _play(self._coevolution, self._store, observers, stop)
+            finally:
+                observers.tell("evoframe_run_finished", directory=self.directory, completed=completed)
+        return completed
+
+
+def prepare(config: RunConfig, out: Path | None = None) -> Execution:
+    """Start the components of a configuration, and make the directory of its run.
 
     Args:
         config: What to run.
-        directory: Where to; must be missing or empty.
-        observers: Who is told; by default the plugins of the configuration.
-        stop: Asked after every turn whether to stop there.
+        out: The run's directory, missing or empty; by default ``runs/<label>-<seed>``, with a counter if
+            that exists.
 
-    Returns:
-        Whether the run was completed.
+    Raises:
+        ConfigurationError: A component refuses to start; there is no directory then.
+        InputError: The directory is not empty, or cannot be made.
     """
-    observers = observers or Observers(config.discovered.manager)
-    completed = False
-    with contextlib.ExitStack() as stack:
-        coevolution = stack.enter_context(assemble(config))
-        store = Store(directory, list(config.populations), simulation_tables(config))
-        stack.callback(store.close)
-        store.save_config(config.to_toml() + _provenance(config))
-        observers.tell("evoframe_run_started", config=config, directory=directory)
+    coevolution = assemble(config)
+    roles, tables = list(config.populations), simulation_tables(config)
+    try:
+        directory = _default_directory(config) if out is None else _given_directory(out)
+        return Execution(config, directory, coevolution, Store(directory, roles, tables))
+    except BaseException:
+        coevolution.close()
+        raise
+
+
+def _default_directory(config: RunConfig) -> Path:
+    """Make a directory that was not there before, so that runs which start together do not meet in one."""
+    base = Path("runs") / f"{config.label}-{config.run.seed}"
+    counted = (base.with_name(f"{base.name}-{number}") for number in itertools.count(2))
+    for directory in itertools.chain([base], counted):
         try:
-            completed = _play(coevolution, store, observers, stop)
-        finally:
-            observers.tell("evoframe_run_finished", directory=directory, completed=completed)
-    return completed
+            directory.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise InputError(f"{directory}: cannot be made: {error.strerror}") from error
+        return directory
+    raise AssertionError  # the counter has no end
+
+
+def _given_directory(directory: Path) -> Path:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        occupied = any(directory.iterdir())
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+    if occupied:
+        raise InputError(f"{directory}: is not empty; choose another directory with --out")
+    return directory
 
 
 def simulation_tables(config: RunConfig) -> Tree:
@@ -177,7 +231,7 @@ def _result(coevolution: Coevolution) -> dict[str, Any]:
     names = [population.name for population in coevolution.populations]
     members = [population.members[population.fittest()] for population in coevolution.populations]
     return {
-        "turns": coevolution.turn,
+        "turns": coevolution.length,
         "best_pair_score": coevolution.best_score,
         "fittest": {
             name: {"genome_id": member.id, "fitness": member.fitness}
@@ -199,6 +253,7 @@ def _provenance(config: RunConfig) -> str:
         "evoframe": __version__,
         "machine": platform.machine(),
         "vector_extensions": [*vectors.get("baseline", []), *vectors.get("found", [])],
+        "c_library": " ".join(platform.libc_ver()),
         "libraries": libraries,
         "components": {key: str(chosen.source) for key, chosen in components.items()},
     }

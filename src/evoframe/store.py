@@ -7,7 +7,6 @@ import json
 import logging
 import os
 import sqlite3
-import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -51,19 +50,18 @@ class Store:
     """The directory of a run that is being written.
 
     Args:
-        directory: The run's directory; made if missing, and it must be empty.
+        directory: The run's directory.
         roles: Names of the populations, in order.
         simulation: What is needed to simulate the champion again, for its file.
 
     Raises:
-        InputError: The directory is not empty, or cannot be made.
+        InputError: The directory belongs to another run, or cannot be written.
         RunError: Raised by all methods when the disk does not take what they write.
     """
 
     def __init__(self, directory: Path, roles: list[str], simulation: Mapping[str, Any]) -> None:
         self.directory = directory
         self.simulation = simulation
-        _make_empty(directory)
         self._database = _new_database(directory / "run.db")
         with self._transaction():
             columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
@@ -111,7 +109,7 @@ class Store:
         """Leave one self-contained database file, unless somebody is reading it just now."""
         try:
             self._database.execute("PRAGMA journal_mode = DELETE")
-        except sqlite3.OperationalError as error:
+        except sqlite3.Error as error:
             _log.info("%s: the journal stays beside the database: %s", self.directory, error)
         self._database.close()
 
@@ -123,19 +121,26 @@ class Store:
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
+        with self._writing():
+            try:
+                self._database.execute("BEGIN IMMEDIATE")
+                yield
+                self._database.execute("COMMIT")
+            finally:
+                if self._database.in_transaction:
+                    self._database.execute("ROLLBACK")
+
+    @contextlib.contextmanager
+    def _writing(self) -> Iterator[None]:
         try:
-            self._database.execute("BEGIN IMMEDIATE")
             yield
-            self._database.execute("COMMIT")
         except sqlite3.Error as error:
             raise RunError(f"{self.directory}: the database cannot be written: {error}") from error
-        finally:
-            if self._database.in_transaction:
-                self._database.execute("ROLLBACK")
 
     def _synchronise(self) -> None:
         if time.monotonic() - self._synced >= _SYNC_INTERVAL:
-            self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
+            with self._writing():
+                self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
             self._synced = time.monotonic()
 
 
@@ -148,18 +153,14 @@ def _json(value: Any) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
-def _make_empty(directory: Path) -> None:
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        occupied = any(directory.iterdir())
-    except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
-    if occupied:
-        raise InputError(f"{directory}: is not empty; choose another directory with --out")
-
-
 def _new_database(path: Path) -> sqlite3.Connection:
     """Open a database that survives a kill at any moment; see ``_SYNC_INTERVAL`` for a power cut."""
+    try:
+        path.touch(exist_ok=False)  # whoever makes it owns the directory
+    except FileExistsError as error:
+        raise InputError(f"{path.parent}: is in use by another run") from error
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
     try:
         database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
         database.execute("PRAGMA journal_mode = WAL")
@@ -170,18 +171,16 @@ def _new_database(path: Path) -> sqlite3.Connection:
 
 
 def _write_atomically(path: Path, text: str) -> None:
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    temporary = path.with_name(f".{path.name}.new")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+        with temporary.open("w", encoding="utf-8", newline="\n") as file:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
+        temporary.replace(path)
     except OSError as error:
+        temporary.unlink(missing_ok=True)
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
-    finally:
-        Path(temporary).unlink(missing_ok=True)
 
 
 def _turn_row(turn: int, report: PopulationReport) -> tuple[Any, ...]:

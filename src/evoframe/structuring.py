@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import attrs
+import numpy as np
 from cattrs import (
     ClassValidationError,
     Converter,
@@ -138,6 +139,8 @@ def _literal(value: Any, target: Any) -> Any:
 
 
 def _tuple(converter: Converter, value: Any, target: Any) -> tuple[Any, ...]:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
     if not isinstance(value, list | tuple):
         raise TypeError(f"expected a list, found {found(value)}")
     types = get_args(target)

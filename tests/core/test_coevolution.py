@@ -230,13 +230,13 @@ class TestRandomStreams:
 class TestBadComponents:
     """Those of other people; that they are the core's own is another matter."""
 
-    @pytest.mark.parametrize("chosen", [[0, 0], [0, 99], [-1], [0.5]])
+    @pytest.mark.parametrize("chosen", [[0, 0], [0, 99], [-1, 0], [0.0, 1.0], [0, 1, 2], 0])
     def test_a_strategy_that_chooses_what_is_not_there_is_named(
         self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, chosen: list[Any]
     ) -> None:
         monkeypatch.setattr(toys.First, "select", lambda self, members, rng: chosen)
         with pytest.raises(
-            RunError, match=r"the collaboration strategy First chose \[.* of the 5 members of 'b'"
+            RunError, match=r"the collaboration strategy First chose .*, not 2 of the 5 members of 'b'"
         ):
             list(assemble(toy_config()))
 

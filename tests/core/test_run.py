@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import contextlib
 import json
+import shutil
 import sqlite3
 import statistics
 from collections.abc import Callable
@@ -13,14 +15,30 @@ from typing import Any
 import numpy as np
 import pytest
 import toys
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
 from modules import plugin
+from numpy.typing import NDArray
 from recorded import assert_same_result, rows
 
 import evoframe.store
-from evoframe import ConfigurationError, InputError, PluginWarning, RunConfig, Turn, load_run, run
+from evoframe import (
+    ConfigurationError,
+    Design,
+    InputError,
+    PluginWarning,
+    RunConfig,
+    RunError,
+    Turn,
+    load_run,
+    run,
+)
 from evoframe.champion import design_from_json, design_to_json, read_champion
+from evoframe.observers import Observers
 from evoframe.plugins import Plugins, Source
-from evoframe.run import default_directory, execute
+from evoframe.run import prepare
+from evoframe.store import Store
 
 Load = Callable[..., RunConfig]
 
@@ -99,16 +117,32 @@ class TestDirectory:
         with pytest.raises(InputError, match="cannot be used for a run"):
             run(toy_config(), out=toy_file)
 
-    def test_the_default_one_counts(
+    def test_the_default_one_counts_and_runs_that_start_together_have_each_their_own(
         self, toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.chdir(tmp_path)
-        names = []
-        for _ in range(3):
-            directory = default_directory(toy_config())
-            names.append(str(directory))
-            directory.mkdir(parents=True)
-        assert names == ["runs/toy-3", "runs/toy-3-2", "runs/toy-3-3"]
+        config = toy_config()
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            finished = list(pool.map(lambda _: run(config), range(8)))
+        names = sorted(str(one.directory) for one in finished)
+        assert names == sorted(["runs/toy-3", *(f"runs/toy-3-{number}" for number in range(2, 9))])
+        assert all(one.pairs == finished[0].pairs for one in finished)
+
+    def test_belongs_to_one_run(self, toy_config: Load, tmp_path: Path) -> None:
+        first = prepare(toy_config(), tmp_path / "run")
+        with pytest.raises(InputError, match="is not empty"):
+            prepare(toy_config(), tmp_path / "run")
+        with pytest.raises(InputError, match="is in use by another run"):
+            Store(tmp_path / "run", ["a", "b"], {})
+        assert first.play(Observers(first.config.discovered.manager))
+
+    def test_that_is_lost_in_the_middle_ends_the_run_in_a_sentence(
+        self, toy_config: Load, tmp_path: Path
+    ) -> None:
+        execution = prepare(toy_config(), tmp_path / "run")
+        shutil.rmtree(tmp_path / "run")
+        with pytest.raises(RunError, match=r"config\.toml: cannot be written: No such file"):
+            execution.play(Observers(execution.config.discovered.manager))
 
 
 def test_a_directory_is_made_only_when_all_components_have_started(
@@ -176,7 +210,7 @@ class TestPython:
         assert finished.config["simulator"]["limit"] == 2.5
 
     def test_a_complete_configuration_takes_no_settings(self, toy_config: Load) -> None:
-        with pytest.raises(TypeError, match="give its settings to load_config"):
+        with pytest.raises(TypeError, match="give settings and plugins to load_config"):
             run(toy_config(), seed=4)
 
     def test_what_is_no_run_is_refused(self, tmp_path: Path) -> None:
@@ -244,7 +278,8 @@ def test_a_run_that_is_stopped_keeps_all_turns_and_says_that_it_is_not_complete(
         asked.append(None)
         return len(asked) == 4
 
-    assert not execute(toy_config(), tmp_path / "run", stop=stop)
+    execution = prepare(toy_config(), tmp_path / "run")
+    assert not execution.play(Observers(execution.config.discovered.manager), stop)
     stopped = load_run(tmp_path / "run")
     assert max(row["turn"] for row in stopped.turns) == 3
     assert stopped.summary == {}
@@ -322,3 +357,23 @@ class TestChampionFile:
         champion.write_text(text)
         with pytest.raises(InputError, match="not valid JSON"):
             read_champion(champion)
+
+
+@given(
+    arrays(
+        st.sampled_from(["bool", "int8", "int64", "uint8", "uint64", "float16", "float32", "float64"]),
+        array_shapes(max_dims=3, max_side=4),
+        elements={"allow_nan": False, "allow_infinity": False},
+    )
+)
+def test_any_design_of_numbers_survives_its_json(array: NDArray[Any]) -> None:
+    document = json.loads(json.dumps(design_to_json(Design({"a": array}))))
+    again = design_from_json(document).roles["a"]
+    assert (again.dtype, again.tobytes()) == (array.dtype, array.tobytes())
+
+
+def test_a_design_that_is_no_array_of_numbers_is_refused_when_it_is_recorded() -> None:
+    with pytest.raises(RunError, match="the design's role 'a' is no array of finite numbers, but float64"):
+        design_to_json(Design({"a": np.array([np.nan])}))
+    with pytest.raises(RunError, match="but complex128"):
+        design_to_json(Design({"a": np.array([1j])}))

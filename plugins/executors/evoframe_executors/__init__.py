@@ -38,10 +38,10 @@ class Threads:
     """Threads of this process; they run at once where a simulator lets go of Python's lock, as ``vox`` does.
 
     Attributes:
-        workers: Number of threads; 0 takes one for each core that this process may use.
+        workers: Number of threads, at most 1024; 0 takes one for each core that this process may use.
     """
 
-    workers: int = attrs.field(default=0, validator=validators.ge(0))
+    workers: int = attrs.field(default=0, validator=[validators.ge(0), validators.le(1024)])
 
     def start(self) -> ExecutorRun:
         """Make the threads ready; a single worker needs none."""

@@ -29,6 +29,7 @@ class _Displacement:
     """
 
     track: ClassVar[str]
+    unit: ClassVar[str] = "m"
 
     every: float = attrs.field(default=0.01, validator=validators.ge(0))
     first: int = attrs.field(default=0, validator=validators.ge(0))

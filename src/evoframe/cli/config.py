@@ -11,6 +11,7 @@ __all__ = ["config"]
 
 
 @click.group()
+@common_options
 def config() -> None:
     """Look at configurations."""
 

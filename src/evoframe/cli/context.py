@@ -10,7 +10,9 @@ from typing import Any, TypeVar
 import attrs
 import click
 from click.shell_completion import CompletionItem
+from rich.console import Console
 
+from evoframe.config import RunConfig
 from evoframe.discovery import discover
 from evoframe.layers import Layer, layer_of, preset_names
 from evoframe.plugins import Plugins
@@ -19,8 +21,11 @@ __all__ = [
     "common_options",
     "configuration_argument",
     "is_quiet",
+    "output",
     "plugins_of",
+    "scored",
     "set_option",
+    "unit_of",
     "workers_option",
 ]
 
@@ -59,7 +64,8 @@ def _add_modules(ctx: click.Context, _: click.Parameter, modules: tuple[str, ...
 
 def _speak(ctx: click.Context, parameter: click.Parameter, value: int) -> None:
     if value:
-        _common(ctx).verbosity = -1 if parameter.name == "quiet" else value
+        common = _common(ctx)
+        common.verbosity = -1 if parameter.name == "quiet" else common.verbosity + value
     level = logging.WARNING - 10 * min(_common(ctx).verbosity, 2)
     logging.basicConfig(level=level, handlers=[_Handler()], format="%(name)s: %(message)s", force=True)
 
@@ -96,6 +102,22 @@ def common_options(function: F) -> F:
     ):
         function = option(function)
     return function
+
+
+def output() -> Console:
+    """Return where tables go: what a user wrote is no markup, and nothing is cut but by a terminal."""
+    console = Console(markup=False, emoji=False, highlight=False)
+    return console if console.is_terminal else Console(markup=False, emoji=False, highlight=False, width=4096)
+
+
+def unit_of(config: RunConfig) -> str:
+    """Return the unit of the scores of a configuration's objective; empty if it does not say."""
+    return str(getattr(config.objective.component, "unit", ""))
+
+
+def scored(score: float | None, unit: str) -> str:
+    """Return a score with all its digits and its *unit*."""
+    return "diverged" if score is None else f"{score!r} {unit}".rstrip()
 
 
 def is_quiet(ctx: click.Context) -> bool:

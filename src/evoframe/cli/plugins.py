@@ -6,16 +6,16 @@ import json
 from typing import Any
 
 import click
-from rich.console import Console
 from rich.table import Table
 
-from evoframe.cli.context import common_options, plugins_of
+from evoframe.cli.context import common_options, output, plugins_of
 from evoframe.plugins import Plugins
 
 __all__ = ["plugins"]
 
 
 @click.group()
+@common_options
 def plugins() -> None:
     """Look at plugins."""
 
@@ -30,10 +30,10 @@ def list_(ctx: click.Context, as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(_document(found), indent=2))
         return
-    console = Console()
+    console = output()
     console.print(_table(found))
     for skipped in found.skipped:
-        console.print(f"skipped: {skipped.source}: {skipped.cause}", markup=False, highlight=False)
+        console.print(f"skipped: {skipped.source}: {skipped.cause}", soft_wrap=True)
 
 
 def _document(found: Plugins) -> dict[str, Any]:

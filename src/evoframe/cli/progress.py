@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -23,7 +24,9 @@ class Progress:
     """An observer that reports on standard error."""
 
     def __init__(self) -> None:
-        self._console = Console(stderr=True)
+        self._console = Console(
+            stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
+        )
         self._bar: _Bar | None = None
         self._task = progress.TaskID(0)
         self._best: dict[str, float] = {}
@@ -36,9 +39,7 @@ class Progress:
         self._turns = config.run.generations * len(config.populations)
         self._started = self._shown = time.monotonic()
         self._console.print(
-            f"{config.label}, seed {config.run.seed}: {self._turns} turns into {directory}",
-            markup=False,
-            highlight=False,
+            f"{config.label}, seed {config.run.seed}: {self._turns} turns into {directory}", soft_wrap=True
         )
         if self._console.is_terminal:
             self._bar = _bar(self._console)
@@ -53,14 +54,12 @@ class Progress:
         self._best |= {report.population: report.best for report in turn.reports}
         now = time.monotonic()
         if self._bar is not None:
-            description = f"turn {turn.index}/{self._turns}"
+            description = f"turn {turn.index}/{self._turns}" if turn.reports else "closing meeting"
             self._bar.update(self._task, advance=1, description=description, detail=self._detail(now))
         elif now - self._shown >= _LINE_INTERVAL or turn.index == self._turns:
             self._shown = now
             self._console.print(
                 f"turn {turn.index}/{self._turns}  {self._detail(now)}  {self._left(turn.index, now)}",
-                markup=False,
-                highlight=False,
                 soft_wrap=True,
             )
 

@@ -9,15 +9,17 @@ from pathlib import Path
 from types import FrameType
 
 import click
-from rich.console import Console
 from rich.table import Table
 
 from evoframe.cli.context import (
     common_options,
     configuration_argument,
     is_quiet,
+    output,
     plugins_of,
+    scored,
     set_option,
+    unit_of,
     workers_option,
 )
 from evoframe.cli.progress import Progress
@@ -26,7 +28,7 @@ from evoframe.layers import Layer, layer_of
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
 from evoframe.resolve import load_config
-from evoframe.run import default_directory, execute
+from evoframe.run import prepare
 
 __all__ = ["run"]
 
@@ -67,26 +69,32 @@ def run(
     """
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins_of(ctx))
-    directory = out or default_directory(config)
     if not is_quiet(ctx):
         config.discovered.manager.register(Progress(), name="evoframe:progress")
     with _stop_on_interrupt() as stop:
-        completed = _completed(config, directory, stop)
-    if not completed:
-        click.echo(f"Interrupted; all turns up to here are saved in {directory}", err=True)
-        ctx.exit(_INTERRUPTED)
-    if is_quiet(ctx):
-        click.echo(directory)
-    else:
-        Console().print(_summary(load_run(directory)))
+        _execute(ctx, config, out, stop)
 
 
-def _completed(config: RunConfig, directory: Path, stop: _Stop) -> bool:
-    """Run, and return whether it went to the end; a second interrupt gives the turn in progress up."""
+def _execute(ctx: click.Context, config: RunConfig, out: Path | None, stop: _Stop) -> None:
+    """Run and say what came of it; a second interrupt gives the turn in progress up."""
+    execution = prepare(config, out)
     try:
-        return execute(config, directory, Observers(config.discovered.manager), stop.is_asked)
+        completed = execution.play(Observers(config.discovered.manager), stop.is_asked)
     except KeyboardInterrupt:
-        return False
+        completed = False
+    if not completed:
+        click.echo(_interrupted(load_run(execution.directory)), err=True)
+        ctx.exit(_INTERRUPTED)
+    elif is_quiet(ctx):
+        click.echo(execution.directory)
+    else:
+        output().print(_summary(load_run(execution.directory), unit_of(config)))
+
+
+def _interrupted(stopped: Run) -> str:
+    turns = [row["turn"] for row in stopped.workload]
+    saved = f"all turns up to {turns[-1]} are saved" if turns else "no turn was finished"
+    return f"Interrupted; {saved} in {stopped.directory}"
 
 
 class _Stop:
@@ -115,18 +123,20 @@ def _stop_on_interrupt() -> Iterator[_Stop]:
         signal.signal(signal.SIGINT, previous)
 
 
-def _summary(finished: Run) -> Table:
-    table = Table(box=None, show_header=False, highlight=False)
-    table.add_column(style="bold")
+def _summary(finished: Run, unit: str) -> Table:
+    table = Table(box=None, show_header=False)
+    table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     result, work = finished.summary, finished.workload
     pairs, simulations = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
     diverged = sum(row["score"] is None for row in finished.pairs)
     best = finished.table("best_pairs")[-1]
-    table.add_row("best pair simulated", f"{best['score']!r} m, in turn {best['turn']}")
+    table.add_row("best pair simulated", f"{scored(best['score'], unit)}, in turn {best['turn']}")
     for population, fittest in result["fittest"].items():
-        table.add_row(f"fittest {population}", f"{fittest['fitness']!r} m, genome {fittest['genome_id']}")
-    table.add_row("displacement of the fittest pair", f"{result['fittest_pair_score']!r} m")
+        table.add_row(
+            f"fittest {population}", f"{scored(fittest['fitness'], unit)}, genome {fittest['genome_id']}"
+        )
+    table.add_row("fittest pair", scored(result["fittest_pair_score"], unit))
     table.add_row("pairs", f"{pairs:,}, of which {simulations:,} simulated and {diverged:,} diverged")
     table.add_row("time", f"{sum(row['seconds'] for row in work):.1f} s")
     table.add_row("directory", str(finished.directory))

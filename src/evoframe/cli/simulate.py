@@ -9,17 +9,25 @@ from pathlib import Path
 
 import attrs
 import click
-from rich.console import Console
 from rich.table import Table
 
 from evoframe.champion import read_champion
-from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
+from evoframe.cli.context import (
+    common_options,
+    output,
+    plugins_of,
+    scored,
+    set_option,
+    unit_of,
+    workers_option,
+)
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.evaluation import Evaluator, Score
+from evoframe.evaluation import Score
 from evoframe.layers import Layer
 from evoframe.plugins import Plugins
 from evoframe.resolve import load_config
+from evoframe.run import evaluator_of
 from evoframe.values import Design, Record
 
 __all__ = ["simulate"]
@@ -71,14 +79,13 @@ def simulate(
     3 contractile) and phase_cycles of the same shape.
     """
     jobs = [_read(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
-    labels = [label for job in jobs for label in job.labels]
-    scores = [score for job in jobs for score in _evaluate(job)]
     if trace is not None:
         _write_trace(trace, jobs)
+    scores = [_evaluate(job) for job in jobs]
     if as_json:
-        click.echo(_json(scores))
+        click.echo(_json([score for some in scores for score in some]))
     else:
-        Console().print(_table(labels, scores))
+        output().print(_table(jobs, scores))
 
 
 def _read(path: Path, preset: str | None, overrides: list[str | Layer], plugins: Plugins) -> _Job:
@@ -103,10 +110,7 @@ def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
 
 
 def _evaluate(job: _Job) -> list[Score]:
-    config = job.config
-    evaluator = Evaluator(
-        config.simulator.component, config.objective.component, config.executor.component.start()
-    )
+    evaluator = evaluator_of(job.config)
     try:
         return evaluator.evaluate(job.designs)
     except InputError as error:
@@ -124,11 +128,15 @@ def _json(scores: list[Score]) -> str:
     )
 
 
-def _table(labels: list[str], scores: list[Score]) -> Table:
-    table = Table("body", "displacement (m)", box=None, header_style="bold", highlight=False)
-    for label, score in zip(labels, scores, strict=True):
-        diverged = f"diverged at step {score.diverged_at}"
-        table.add_row(label, diverged if score.value is None else repr(score.value))
+def _table(jobs: list[_Job], scores: list[list[Score]]) -> Table:
+    table = Table(box=None, header_style="bold")
+    table.add_column("body", overflow="fold")
+    table.add_column("displacement", overflow="fold")
+    for job, some in zip(jobs, scores, strict=True):
+        unit = unit_of(job.config)
+        for label, score in zip(job.labels, some, strict=True):
+            step = f" at step {score.diverged_at}" if score.value is None else ""
+            table.add_row(label, scored(score.value, unit) + step)
     return table
 
 
@@ -138,10 +146,13 @@ def _write_trace(path: Path, jobs: list[_Job]) -> None:
         raise InputError(f"--trace writes the trace of one body, but {len(bodies)} were given")
     [(job, design)] = bodies
     try:
+        rows = list(_trace(job.config, design))
         with path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file, lineterminator="\n").writerows(_trace(job.config, design))
+            csv.writer(file, lineterminator="\n").writerows(rows)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    except InputError as error:
+        raise InputError(f"{job.path}: {error}") from error
 
 
 def _trace(config: RunConfig, design: Design) -> Iterator[list[str]]:
