@@ -40,9 +40,9 @@ clean:
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
 
 $(VENV)/installed: $(BIN)/python $(SOURCES)
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' # the first to know dependency groups
 	$(BIN)/python -m pip install --quiet --editable .
 	touch $@
 

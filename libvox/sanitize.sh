@@ -11,6 +11,13 @@ compiler=${CC:-cc}
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 
+# Some compilers come without the sanitizers' libraries; then nothing below could say what is missing.
+if ! echo 'int main(void) { return 0; }' | "$compiler" -fsanitize=address,undefined -x c - -o "$place/probe" ||
+    [[ ! -e $("$compiler" -print-file-name=libasan.so) ]]; then
+    echo "sanitize.sh: $compiler has no libasan or libubsan; install them, or set CC to a gcc that has them" >&2
+    exit 1
+fi
+
 flags=(-std=c11 -g -O1 -Wall -Wextra -Wconversion -Wshadow -Werror -fsanitize=address,undefined -fno-sanitize-recover=all)
 "$compiler" "${flags[@]}" -I "$root/libvox/include" "$root/tests/libvox/embed.c" "$root"/libvox/*.c -o "$place/embed" -lm
 "$place/embed"

@@ -48,8 +48,14 @@ from evoframe.values import (
     Turn,
     Workload,
 )
+from evoframe.voxels import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE
 
 __all__ = [
+    "CONTRACTILE",
+    "CONTROLLER",
+    "EMPTY",
+    "MORPHOLOGY",
+    "PASSIVE",
     "Aggregator",
     "BestPair",
     "Champion",

@@ -9,13 +9,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import toys
-from processes import Evoframe
+from processes import Evoframe, surroundings
 
 import evoframe as package
 
@@ -25,9 +25,9 @@ def on_a_terminal(arguments: list[str], directory: Path) -> str:
     pid, terminal = pty.fork()
     if pid == 0:
         os.chdir(directory)
-        os.environ.update(TERM="xterm-256color", COLUMNS="80", LINES="24")
+        terminal_of = {**surroundings(), "TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24"}
         command = [sys.executable, "-m", "evoframe", *arguments]
-        os.execv(sys.executable, command)  # noqa: S606 - the program under test
+        os.execve(sys.executable, command, terminal_of)  # noqa: S606 - the program under test
     shown = b""
     with contextlib.suppress(OSError):  # what a terminal reads once its program has ended
         while part := os.read(terminal, 65536):
@@ -36,17 +36,30 @@ def on_a_terminal(arguments: list[str], directory: Path) -> str:
     return shown.decode()
 
 
-def running(directory: Path, until: str) -> subprocess.Popen[str]:
-    """Start the paper's run in ``here``, and return as soon as the file *until* is there."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "evoframe", "run", "--workers", "1", "--out", "here"],
-        cwd=directory,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    while not (directory / "here" / until).exists():
-        time.sleep(0.02)
-    return process
+@contextlib.contextmanager
+def slow_run(directory: Path, *settings: str) -> Iterator[subprocess.Popen[str]]:
+    """Start a run of toys that takes its time, and make sure that it ends."""
+    (directory / "toy.toml").write_text(toys.CONFIGURATION)
+    options = [option for setting in settings for option in ("--set", setting)]
+    command = ["-m", "evoframe", "run", "-v", "-p", toys.__file__, "toy.toml", "--out", "here", *options]
+    with subprocess.Popen(
+        [sys.executable, *command], cwd=directory, env=surroundings(), stderr=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def read_until(process: subprocess.Popen[str], words: str) -> None:
+    """Read what a program says until it says these *words*."""
+    assert process.stderr is not None
+    said = []
+    for line in process.stderr:
+        said.append(line)
+        if words in line:
+            return
+    pytest.fail(f"the program ended without {words!r}: {said}")
 
 
 def test_says_its_version(evoframe: Evoframe) -> None:
@@ -190,34 +203,48 @@ class TestRun:
         assert f"simulated and {diverged} diverged" in ran.stdout
 
     def test_on_a_terminal_there_is_a_bar_that_is_taken_away_at_the_end(self, tmp_path: Path) -> None:
-        shown = on_a_terminal(["run", "quick", "--set", "run.generations=10"], tmp_path)
-        assert re.search(r"turn \d+/20 .*0:00:\d\d\S* left", shown)
-        assert re.search(r"morphology \S+  controller \S+  \d+ sim/s  \d+% cached", shown)
-        assert (
-            shown.count("\x1b[?25l") == shown.count("\x1b[?25h") > 0
-        )  # the cursor is hidden, and comes back
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        slow = ["--set", "simulator={name='toy-slow', delay=0.15}"]
+        shown = on_a_terminal(["run", "-p", toys.__file__, "toy.toml", *slow], tmp_path)
+        assert re.search(r"turn \d+/8 .*\d:\d\d:\d\d\S* left", shown)
+        assert re.search(r"a \S+  b \S+  \d+ sim/s  \d+% cached", shown)
+        hidden, back = shown.count("\x1b[?25l"), shown.count("\x1b[?25h")
+        assert hidden == back > 0  # the cursor
 
-    def test_a_second_interrupt_stops_at_once_and_keeps_what_is_saved(self, tmp_path: Path) -> None:
-        process = running(tmp_path, until="run.db")
-        time.sleep(0.3)  # within the initial meeting, which takes a second or more
-        process.send_signal(signal.SIGINT)
-        time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-        assert process.returncode == 130
-        assert "Traceback" not in errors
-        assert "press Ctrl-C again to stop at once" in errors
-        assert len(package.load_run(tmp_path / "here").turns) in (0, 2)
+    def test_the_fittest_who_have_not_met_do_at_the_end(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        last = ["--set", "collaboration={name='toy-last'}"]
+        ran = evoframe("run", "-p", toys.__file__, "toy.toml", *last, "--out", "here")
+        assert ran.returncode == 0, ran.stderr
+        assert "8 turns into here" in ran.stderr
+        finished = package.load_run(tmp_path / "here")
+        assert finished.summary["turns"] == 8
+        assert sum(pair["turn"] == 9 for pair in finished.pairs) == 1
+
+    def test_names_are_shown_as_they_are_written(self, evoframe: Evoframe) -> None:
+        ran = evoframe("run", "quick", "--set", "run.generations=0", "--out", "r[/a] [bold]x :smile:")
+        assert ran.returncode == 0, ran.stderr
+        assert "directory" in ran.stdout
+        assert "r[/a] [bold]x :smile:" in ran.stdout
 
     def test_interrupt_stops_after_the_turn_and_keeps_it(self, tmp_path: Path) -> None:
-        process = running(tmp_path, until="champion.json")
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-        assert process.returncode == 130
-        assert "Interrupted; all turns up to here are saved in here" in errors
-        assert "Traceback" not in errors
+        with slow_run(tmp_path, "simulator={name='toy-slow', delay=0.2}", "run.generations=100") as process:
+            read_until(process, "turn 0: a pair with the score")
+            process.send_signal(signal.SIGINT)
+            read_until(process, "Interrupted; all turns up to ")
+            assert process.wait(60) == 130
         turns = package.load_run(tmp_path / "here").turns
-        assert 2 <= len(turns) < 401
+        assert 2 <= len(turns) < 200
+
+    def test_a_second_interrupt_stops_at_once(self, tmp_path: Path) -> None:
+        with slow_run(tmp_path, "simulator={name='toy-slow', delay=3600.0}") as process:
+            read_until(process, "toy, seed 3: 8 turns into here")
+            process.send_signal(signal.SIGINT)
+            read_until(process, "press Ctrl-C again to stop at once")
+            process.send_signal(signal.SIGINT)
+            read_until(process, "Interrupted; no turn was finished in here")
+            assert process.wait(60) == 130
+        assert package.load_run(tmp_path / "here").turns == []
 
 
 FAULTS = [

@@ -12,6 +12,15 @@ Evoframe = Callable[..., subprocess.CompletedProcess[str]]
 """Takes the arguments of ``evoframe``, and changes to the environment as keyword arguments."""
 
 
+_OF_THE_TERMINAL = ("FORCE_COLOR", "NO_COLOR", "COLUMNS", "LINES", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
+
+
+def surroundings() -> dict[str, str]:
+    """Return the environment without what would change what a program shows."""
+    kept = {key: value for key, value in os.environ.items() if not key.startswith("EVOFRAME_")}
+    return {key: value for key, value in kept.items() if key not in _OF_THE_TERMINAL}
+
+
 def python(
     *arguments: object, directory: Path | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
@@ -19,7 +28,7 @@ def python(
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
         cwd=directory,
-        env={**os.environ, **environment},
+        env={**surroundings(), **environment},
         capture_output=True,
         text=True,
         check=False,

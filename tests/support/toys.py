@@ -5,6 +5,7 @@ A genome is a number, a design has one number for each role, and a score is thei
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -197,6 +198,17 @@ class Product:
 
 
 @attrs.frozen
+class Slow(Product):
+    """Takes its time, so that a test can do something meanwhile."""
+
+    delay: float = 0.1
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        time.sleep(self.delay)
+        return super().simulate(designs, record)
+
+
+@attrs.frozen
 class Value:
     record: ClassVar[Record] = Record(tracks=("value",))
 
@@ -244,7 +256,7 @@ def evoframe_evolvers() -> Mapping[str, type[Any]]:
 
 @hookimpl
 def evoframe_simulators() -> Mapping[str, type[Any]]:
-    return {"toy-product": Product}
+    return {"toy-product": Product, "toy-slow": Slow}
 
 
 @hookimpl

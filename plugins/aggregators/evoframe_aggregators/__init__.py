@@ -1,7 +1,6 @@
 """The four averages of the paper: ``am``, ``wm``, ``gm``, ``hm``.
 
-All of them sort the scores first, so that their order cannot matter, even in the last bit, and compute with
-:mod:`math`: the last bits of numpy's ``exp`` and ``log`` depend on the vector unit of the processor.
+All of them sort the scores first, so that their order cannot matter, even in the last bit.
 """
 
 from __future__ import annotations

@@ -8,16 +8,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CONTRACTILE", "EMPTY", "MORPHOLOGY", "PASSIVE", "Canvas", "voxel_points"]
+__all__ = ["Canvas", "voxel_points"]
 
 Canvas: TypeAlias = tuple[int, int, int]
 """Number of voxels along x, y and z."""
-
-MORPHOLOGY = "morphology"
-"""The role of the material codes."""
-
-EMPTY, PASSIVE, CONTRACTILE = 0, 1, 3
-"""Material codes; contractile is 3 because the authors feed that to the network and write it to VXA files."""
 
 
 @lru_cache(maxsize=8)

@@ -7,12 +7,11 @@ import math
 import attrs
 import numpy as np
 
-from evoframe import Design, Network
-from evoframe_encoders.canvas import CONTRACTILE, MORPHOLOGY, voxel_points
+from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, Design, Network
+from evoframe_encoders.canvas import voxel_points
 
 __all__ = ["CppnController"]
 
-_CONTROLLER = "controller"
 _LARGEST_OFFSET = 2.0 * math.pi
 
 
@@ -49,7 +48,7 @@ class CppnController:
     @property
     def provides(self) -> tuple[str, ...]:
         """The controller, ``float64[X, Y, Z]``: phase offsets within +-2 pi."""
-        return (_CONTROLLER,)
+        return (CONTROLLER,)
 
     def decode(self, network: Network, design: Design) -> Design:
         """Return *design* with the phase offsets that *network* draws on its body."""
@@ -60,4 +59,4 @@ class CppnController:
         offsets = np.zeros(body.shape)
         offsets[contracts] = np.clip(network(points)[:, 0], -_LARGEST_OFFSET, _LARGEST_OFFSET)
         offsets.setflags(write=False)
-        return design.with_role(_CONTROLLER, offsets)
+        return design.with_role(CONTROLLER, offsets)

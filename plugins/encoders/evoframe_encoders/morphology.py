@@ -10,8 +10,8 @@ import numpy as np
 from attrs.validators import ge
 from numpy.typing import NDArray
 
-from evoframe import Design, Network
-from evoframe_encoders.canvas import CONTRACTILE, EMPTY, MORPHOLOGY, PASSIVE, Canvas, voxel_points
+from evoframe import CONTRACTILE, EMPTY, MORPHOLOGY, PASSIVE, Design, Network
+from evoframe_encoders.canvas import Canvas, voxel_points
 
 __all__ = ["CppnMorphology"]
 

@@ -5,9 +5,9 @@ Each has the formula, the scale and the clamps of neat-python 2.0; the five that
 leaves a node is clamped to +-:data:`LIMIT`, and a NaN becomes 0: no network can leave the finite numbers.
 
 Arithmetic is numpy's, which rounds as Python does. Exponentials, logarithms, sines and powers come from the
-C library through :mod:`math`, one number at a time: numpy's own differ in their last bits from one vector
-unit to another, and a node such as ``inv`` turns a last bit into any error. This way a network is
-neat-python's network bit for bit, whatever vector unit numpy finds.
+C library through :mod:`math`, one number at a time, as neat-python's do: numpy's own differ from these in
+their last bits, and a node such as ``inv`` turns a last bit into any error. The C library too may choose
+other variants on another processor; on one machine a network is neat-python's network bit for bit.
 """
 
 from __future__ import annotations

@@ -153,9 +153,7 @@ class NeatRun(NetworkRun):
         Raises:
             ValueError: It is not the state of such a population; this one stays as it is.
         """
-        if entry(state, "evolver", str) != "neat":
-            raise ValueError(f"the state is one of '{state['evolver']}', not of 'neat'")
-        cohort = Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
+        cohort = self._saved_cohort(state, "neat")
         species = [_load_species(saved, cohort.genomes) for saved in rows(state, "species")]
         next_species = whole(state, "next_species", 1)
         _check_partition(species, cohort.genomes, next_species)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import Member, Network
+from evoframe_evolvers.checked import entry
 from evoframe_evolvers.cohort import Cohort
 from evoframe_evolvers.genomes import GenePool
 
@@ -17,10 +18,11 @@ __all__ = ["NetworkRun"]
 
 
 class NetworkRun(ABC):
-    """An evolver at work on the genomes of a pool; a subclass sets the pool and the first cohort."""
+    """An evolver at work on the genomes of a pool; a subclass sets pool, size and first cohort."""
 
     _pool: GenePool
     _cohort: Cohort
+    _size: int
 
     @abstractmethod
     def _succeed(self) -> None:
@@ -55,6 +57,13 @@ class NetworkRun(ABC):
     def dump(self, genome: Any) -> Any:
         """Return *genome* as JSON values."""
         return self._pool.dump(genome)
+
+    def _saved_cohort(self, state: Any, evolver: str) -> Cohort:
+        """Return the cohort of a saved state, which must be one of this *evolver*."""
+        saved = entry(state, "evolver", str)
+        if saved != evolver:
+            raise ValueError(f"the state is one of '{saved}', not of '{evolver}'")
+        return Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
 
     @abstractmethod
     def state(self) -> Any:

@@ -83,8 +83,6 @@ class RandomSearchRun(NetworkRun):
         Raises:
             ValueError: It is not the state of such a population; this one stays as it is.
         """
-        if entry(state, "evolver", str) != "random":
-            raise ValueError(f"the state is one of '{state['evolver']}', not of 'random'")
-        cohort = Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
+        cohort = self._saved_cohort(state, "random")
         self._pool.restore(entry(state, "pool", dict), cohort.genomes.values())
         self._cohort = cohort

@@ -9,13 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe import Design, InputError
+from evoframe import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE, Design, InputError
 from evoframe_simulators.npz import PackedArray, open_npz
 
-__all__ = ["CONTRACTILE", "EMPTY", "PASSIVE", "check_design", "read_bodies"]
-
-EMPTY, PASSIVE, CONTRACTILE = 0, 1, 3
-"""Material codes (3, not 2, is what the authors feed to the controller network and write to files)."""
+__all__ = ["check_design", "read_bodies"]
 
 _MOST_CELLS = 2**24
 _MOST_CYCLES = 1e6  # beyond, single precision knows no fraction of a cycle
@@ -27,7 +24,7 @@ def check_design(design: Design) -> None:
     Raises:
         InputError: Says what is wrong with its arrays.
     """
-    material, phase = design.roles["morphology"], design.roles["controller"]
+    material, phase = design.roles[MORPHOLOGY], design.roles[CONTROLLER]
     if material.ndim != 3 or material.dtype != np.uint8:
         raise InputError(f"morphology is {_described(material)}; expected uint8[X, Y, Z]")
     if phase.shape != material.shape or phase.dtype != np.float64:

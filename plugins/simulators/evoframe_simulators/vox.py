@@ -15,8 +15,18 @@ from attrs import validators
 from numpy.typing import NDArray
 
 import evoframe_libvox as libvox
-from evoframe import ConfigurationError, Design, InputError, Outcome, Record
-from evoframe_simulators.bodies import CONTRACTILE, PASSIVE, check_design, read_bodies
+from evoframe import (
+    CONTRACTILE,
+    CONTROLLER,
+    MORPHOLOGY,
+    PASSIVE,
+    ConfigurationError,
+    Design,
+    InputError,
+    Outcome,
+    Record,
+)
+from evoframe_simulators.bodies import check_design, read_bodies
 from evoframe_simulators.sampling import count_samples, sample_steps
 
 __all__ = ["Vox"]
@@ -53,7 +63,7 @@ class Vox:
         slow_damping: Damping ratio against the ground.
     """
 
-    requires: ClassVar[tuple[str, ...]] = ("morphology", "controller")
+    requires: ClassVar[tuple[str, ...]] = (MORPHOLOGY, CONTROLLER)
     tracks: ClassVar[tuple[libvox.Track, ...]] = ("tip", "face", "body")
 
     duration: float = attrs.field(default=0.07, validator=_POSITIVE)
@@ -108,7 +118,7 @@ class Vox:
             InputError: The design is no body with a controller.
         """
         check_design(design)
-        material, phase = design.roles["morphology"], self._phase_cycles(design)
+        material, phase = design.roles[MORPHOLOGY], self._phase_cycles(design)
         acting = phase[material == CONTRACTILE] if self.expansion_coefficient else phase[:0]
         with np.errstate(over="ignore"):  # left to the solver to refuse
             single = acting.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
@@ -145,7 +155,7 @@ class Vox:
         """
         unit = 1.0 if self.phase_unit == "cycles" else math.tau
         return [
-            (label, Design({"morphology": material, "controller": phase_cycles * unit}))
+            (label, Design({MORPHOLOGY: material, CONTROLLER: phase_cycles * unit}))
             for label, material, phase_cycles in read_bodies(path)
         ]
 
@@ -154,7 +164,7 @@ class Vox:
         return {"libvox kernel": libvox.KERNEL}
 
     def _phase_cycles(self, design: Design) -> NDArray[np.float64]:
-        phase: NDArray[np.float64] = design.roles["controller"]
+        phase: NDArray[np.float64] = design.roles[CONTROLLER]
         return phase if self.phase_unit == "cycles" else phase / math.tau
 
     def _simulate(
@@ -163,7 +173,7 @@ class Vox:
         """Simulate designs on one canvas together, as far as they share a time step."""
         model = _model(self, canvas)
         numbers = np.array(list(designs))
-        material = np.stack([design.roles["morphology"] for design in designs.values()])
+        material = np.stack([design.roles[MORPHOLOGY] for design in designs.values()])
         phase = np.stack([self._phase_cycles(design) for design in designs.values()])
         time_steps, steps = model.time_steps(material)
         outcomes: dict[int, Outcome] = {}
@@ -186,7 +196,7 @@ def _by_canvas(designs: Sequence[Design]) -> Iterator[tuple[tuple[int, int, int]
     """Group the designs that have a voxel by their canvas."""
     groups: dict[tuple[int, int, int], list[int]] = {}
     for index, design in enumerate(designs):
-        material = design.roles["morphology"]
+        material = design.roles[MORPHOLOGY]
         if material.any():
             x, y, z = material.shape
             groups.setdefault((x, y, z), []).append(index)
