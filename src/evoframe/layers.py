@@ -69,13 +69,16 @@ class Layers:
             result = _merge(result, layer.tree, ())
         return result
 
-    def origin(self, path: tuple[str, ...]) -> str:
-        """Return the origin of the value at *path*, or of the nearest table around it."""
+    def origin(self, *paths: tuple[str, ...]) -> str:
+        """Return the origin of the value at the latest of *paths*, or of the nearest table around it."""
+        return self.layers[max(map(self._level, paths))].origin
+
+    def _level(self, path: tuple[str, ...]) -> int:
         for length in range(len(path), 0, -1):
-            for layer in reversed(self.layers):
-                if _has(layer.tree, path[:length]):
-                    return layer.origin
-        return self.layers[-1].origin
+            for level in range(len(self.layers) - 1, -1, -1):
+                if _has(self.layers[level].tree, path[:length]):
+                    return level
+        return 0
 
 
 def preset_names() -> list[str]:

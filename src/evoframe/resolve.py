@@ -56,8 +56,12 @@ def load_config(
     return config
 
 
+def _line(fault: Fault, layers: Layers) -> str:
+    return f"{layers.origin(fault.path, fault.involves)}: {'.'.join(fault.path)}: {fault.message}"
+
+
 def _report(faults: list[Fault], layers: Layers) -> str:
-    lines = [f"{layers.origin(fault.path)}: {'.'.join(fault.path)}: {fault.message}" for fault in faults]
+    lines = [_line(fault, layers) for fault in faults]
     if len(lines) == 1:
         return lines[0]
     return "\n  ".join([f"{len(lines)} faults in the configuration:", *lines])
@@ -202,7 +206,7 @@ class _Checks:
         if "aggregator" in self.chosen:
             for count in sorted(counts):
                 check = functools.partial(self.chosen["aggregator"].check, count)
-                yield from _refusal(("aggregator",), check)
+                yield from _refusal(("aggregator",), check, involves=("collaboration",))
 
     def _roles(self) -> Iterator[Fault]:
         if not self.complete:
@@ -225,7 +229,7 @@ class _Checks:
     def _record(self) -> Iterator[Fault]:
         if "simulator" in self.chosen and "objective" in self.chosen:
             check = functools.partial(self.chosen["simulator"].check, self.chosen["objective"].record)
-            yield from _refusal(("objective",), check)
+            yield from _refusal(("objective",), check, involves=("simulator",))
 
 
 def _breaches(offer: Offer, component: Any) -> Iterator[str]:
@@ -248,8 +252,10 @@ def _is_frozen(component: Any) -> bool:
     return False
 
 
-def _refusal(path: tuple[str, ...], check: Callable[[], object]) -> Iterator[Fault]:
+def _refusal(
+    path: tuple[str, ...], check: Callable[[], object], involves: tuple[str, ...] = ()
+) -> Iterator[Fault]:
     try:
         check()
     except ConfigurationError as error:
-        yield Fault(path, str(error))
+        yield Fault(path, str(error), involves)

@@ -36,10 +36,12 @@ class Fault:
     Attributes:
         path: The keys that lead to it; an index is part of its key, as in ``weights[1]``.
         message: What was found, what was expected, what to do.
+        involves: Another key that has its part in it, if there is one.
     """
 
     path: Path
     message: str
+    involves: Path = ()
 
 
 class StructureError(Exception):

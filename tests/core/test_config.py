@@ -262,12 +262,21 @@ class TestRealComponents:
         ("override", "parts"),
         [
             ("aggregator=wn", ["unknown aggregator 'wn'; did you mean 'wm'?", "am, gm, hm, wm"]),
-            ("collaboration.n=4", ["wm has no weights for 4 collaborators (the paper gives 2, 3, 5, 7, 10)"]),
+            (
+                "collaboration.n=4",
+                [
+                    "--set collaboration.n=4: aggregator: ",
+                    "wm has no weights for 4 collaborators (the paper gives 2, 3, 5, 7, 10)",
+                ],
+            ),
             ("collaboration.n=30", ["collaboration", "30", "25"]),
             ("simulator.step=1", ["simulator.step: unknown option"]),
             ('aggregator.weights=[0.5, "a"]', ['aggregator.weights[1]: expected a number, found "a"']),
             ("simulator.duration=0", ["simulator.duration: must be > 0.0, found 0.0"]),
-            ("simulator.duration=0.03", ["objective", "sample 5", "simulator.duration = 0.03 s"]),
+            (
+                "simulator.duration=0.03",
+                ["--set simulator.duration=0.03: objective: ", "sample 5", "simulator.duration = 0.03 s"],
+            ),
             ("simulator.voxel_size=1e9", ["simulator: ", "voxel_size", "1000000000.0"]),
             ("simulator.duration=1e300", ["simulator: ", "time step"]),
             ("simulator.phase_unit=degrees", ['expected one of "cycles", "radians", found "degrees"']),
