@@ -4,27 +4,24 @@
 #include "internal.h"
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
-static const double MOST_STEPS = 9007199254740992.0;       /* 2^53 */
+static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
 
-/* Index of the cell one further along an axis, or -1 at the end of the canvas. */
-static int64_t cell_after(const vox_model *model, int64_t cell, enum axis axis)
+int64_t cell_beside(const vox_model *model, int64_t cell, enum axis axis, bool upwards)
 {
     const struct vox_settings *s = &model->settings;
-    switch (axis) {
-    case AXIS_X: return cell % s->nx < s->nx - 1 ? cell + 1 : -1;
-    case AXIS_Y: return cell / s->nx % s->ny < s->ny - 1 ? cell + s->nx : -1;
-    case AXIS_Z: break;
-    }
-    return cell / (s->nx * s->ny) < s->nz - 1 ? cell + s->nx * s->ny : -1;
+    const int64_t stride[] = {1, s->nx, s->nx * s->ny}, length[] = {s->nx, s->ny, s->nz};
+    const int64_t at = cell / stride[axis] % length[axis];
+    if (at == (upwards ? length[axis] - 1 : 0)) return -1;
+    return upwards ? cell + stride[axis] : cell - stride[axis];
 }
 
 /* Index of the cell at the other end of a bond along +axis, or -1 if there is no bond: neighbours that are both
  * clamped have none. */
 static int64_t bonded_cell_after(const vox_model *model, const uint8_t *material, int64_t cell, enum axis axis)
 {
-    const int64_t next = cell_after(model, cell, axis);
-    if (next < 0 || !material[next] || (model->clamped[cell] && model->clamped[next])) return -1;
-    return next;
+    const int64_t next = cell_beside(model, cell, axis, true);
+    if (next < 0 || !material[next]) return -1;
+    return model->fixed[cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL ? -1 : next;
 }
 
 static const struct substance *substance_at(const vox_model *model, uint8_t code)
@@ -33,14 +30,18 @@ static const struct substance *substance_at(const vox_model *model, uint8_t code
 }
 
 /* Section 3. A body without bonds has a shorter step: the square root of the edge is missing. */
-static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond, double fastest_voxel)
+static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond,
+                                 double fastest_voxel)
 {
+    const struct vox_settings *s = &model->settings;
     const double fastest = census->n_bonds > 0 ? fastest_bond : fastest_voxel;
-    census->dt = model->settings.time_step_fraction / (TWO_PI_OF_TIME_STEP * sqrt(fastest));
-    const double periods = model->settings.duration / census->dt;
-    if (!(census->dt > 0.0 && isfinite(census->dt) && periods < MOST_STEPS)) return VOX_BAD_TIME_STEP;
-    census->steps = (int64_t)periods + 1;
-    return VOX_OK;
+    const double dt = s->time_step_fraction / (TWO_PI_OF_TIME_STEP * sqrt(fastest));
+    const double periods = s->duration / dt;
+    if (!(dt > 0.0 && isfinite(dt) && periods < MOST_STEPS)) return VOX_BAD_TIME_STEP;
+    census->dt = dt / (double)s->substeps;
+    census->steps = ((int64_t)periods + 1) * s->substeps;
+    if (census->steps > s->step_limit) return VOX_TOO_MANY_STEPS;
+    return census->dt > 0.0 ? VOX_OK : VOX_BAD_TIME_STEP;
 }
 
 enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census)
@@ -82,7 +83,7 @@ static struct voxel voxel_at_rest(const vox_model *model, int64_t cell, uint8_t 
         .phase = substance->strain_amplitude != 0.0 ? (double)(float)phase_cycles : 0.0,
         .substance = substance,
         .cell = (int32_t)cell,
-        .clamped = model->clamped[cell] != 0,
+        .fixed = model->fixed[cell],
     };
 }
 
@@ -131,12 +132,17 @@ enum vox_status body_create(struct body *body, const vox_model *model, const str
     if (!body->voxels || !body->bonded || !body->bonds || !body->voxel_in) return VOX_NO_MEMORY;
     place_voxels(body, material, phase_cycles);
     place_bonds(body, material);
+    if (model->settings.fluid_drag > 0.0) {
+        const enum vox_status status = surface_create(body);
+        if (status != VOX_OK) return status;
+    }
     return model->settings.self_collision ? contacts_create(body) : VOX_OK;
 }
 
 void body_destroy(struct body *body)
 {
     contacts_destroy(&body->contacts);
+    surface_destroy(&body->surface);
     free(body->voxels);
     free(body->bonded);
     free(body->bonds);

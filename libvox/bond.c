@@ -9,7 +9,6 @@ static const double SMALL_EXTENSION = 1.30, LARGE_EXTENSION = 1.43;
 
 static const double SLOPE_OF_SMALL_TURN = 0.01732;
 static const double COSINE_OF_SMALL_ROTATION = 0.9988;
-static const double MOST_STRAIN = 100.0;
 
 /* A vector seen in axes of which the bond's own is the first, and back. */
 static struct vec axis_to_x(enum axis axis, struct vec v)
@@ -136,9 +135,15 @@ static inline void load(struct voxel *voxel, enum axis axis, struct quat frame, 
     voxel->torque = vec_sub(voxel->torque, quat_rotate(frame, x_to_axis(axis, moment)));
 }
 
-static bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels, double edge, double per_second)
+/* How a bond is deformed now. */
+struct pose {
+    struct deformation deformation;
+    struct quat frame; /* takes the bond's frame, in the world's axes, to the world */
+    bool small;
+};
+
+static inline struct pose pose_of(const struct bond *bond, const struct voxel *lower, const struct voxel *upper)
 {
-    struct voxel *lower = &voxels[bond->lower], *upper = &voxels[bond->upper];
     const enum axis axis = bond->axis;
     const double rest = 0.5 * (lower->size + upper->size);
     const struct quat back = quat_conj(lower->orientation);
@@ -147,39 +152,72 @@ static bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels
     const struct vec turn_axis = axis_to_x(axis, (struct vec){turn.x, turn.y, turn.z});
     const struct quat relative = {turn.w, turn_axis.x, turn_axis.y, turn_axis.z};
 
-    const bool small = next_frame_is_small(bond->small, relative.w, u, rest);
-    const bool same_frame = small == bond->small;
-    struct deformation now;
-    struct quat frame; /* takes the bond's frame, in the world's axes, to the world */
-    if (small) {
-        now = (struct deformation){{u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
-        frame = lower->orientation;
-    } else {
-        const double length = sqrt(vec_dot(u, u));
-        const struct quat onto_x = rotation_onto_x(u, length);
-        const struct vec straighten = x_to_axis(axis, (struct vec){onto_x.x, onto_x.y, onto_x.z});
-        now = (struct deformation){
-            {length - rest, 0.0, 0.0}, rotation_vector(onto_x), rotation_vector(quat_mul(onto_x, relative))};
-        frame = quat_mul(lower->orientation, (struct quat){onto_x.w, -straighten.x, -straighten.y, -straighten.z});
+    if (next_frame_is_small(bond->small, relative.w, u, rest)) {
+        const struct deformation small = {{u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
+        return (struct pose){small, lower->orientation, true};
     }
+    const double length = sqrt(vec_dot(u, u));
+    const struct quat onto_x = rotation_onto_x(u, length);
+    const struct vec straighten = x_to_axis(axis, (struct vec){onto_x.x, onto_x.y, onto_x.z});
+    const struct deformation large = {
+        {length - rest, 0.0, 0.0}, rotation_vector(onto_x), rotation_vector(quat_mul(onto_x, relative))};
+    const struct quat frame =
+        quat_mul(lower->orientation, (struct quat){onto_x.w, -straighten.x, -straighten.y, -straighten.z});
+    return (struct pose){large, frame, false};
+}
 
-    struct wrench wrench = spring(bond->coupling, now);
-    if (same_frame) { /* a change of frame leaves the history as it is, and the next step takes its rates from it */
-        add_damping(&wrench, bond->coupling, rate_of(now, bond, per_second));
-        bond->stretch = now.stretch;
-        bond->turn_lower = now.turn_lower;
-        bond->turn_upper = now.turn_upper;
+/* False if the bond is stretched or compressed by more than `most`, or by a NaN. */
+static bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels, double most, double per_second)
+{
+    struct voxel *lower = &voxels[bond->lower], *upper = &voxels[bond->upper];
+    const struct pose pose = pose_of(bond, lower, upper);
+    const struct deformation *now = &pose.deformation;
+
+    struct wrench wrench = spring(bond->coupling, *now);
+    if (pose.small == bond->small) { /* a change of frame leaves the history, from which the next rates come */
+        add_damping(&wrench, bond->coupling, rate_of(*now, bond, per_second));
+        bond->stretch = now->stretch;
+        bond->turn_lower = now->turn_lower;
+        bond->turn_upper = now->turn_upper;
     }
-    bond->small = small;
-    load(lower, axis, frame, wrench.force_lower, wrench.moment_lower);
-    load(upper, axis, frame, wrench.force_upper, wrench.moment_upper);
-    return now.stretch.x <= MOST_STRAIN * edge; /* false for a NaN */
+    bond->small = pose.small;
+    load(lower, bond->axis, pose.frame, wrench.force_lower, wrench.moment_lower);
+    load(upper, bond->axis, pose.frame, wrench.force_upper, wrench.moment_upper);
+    return fabs(now->stretch.x) <= most;
 }
 
 bool bonds_apply(struct body *body, double per_second)
 {
+    const struct vox_settings *s = &body->model->settings;
+    const double most = s->largest_strain * s->voxel_size;
     bool fine = true;
     for (int64_t i = 0; i < body->census.n_bonds; i++)
-        fine &= bond_apply(&body->bonds[i], body->voxels, body->model->settings.voxel_size, per_second);
+        fine &= bond_apply(&body->bonds[i], body->voxels, most, per_second);
     return fine;
+}
+
+/* The energy of which the spring's forces and moments are the derivatives. */
+static double spring_energy(const struct coupling *c, struct deformation d)
+{
+    const struct vec p = d.stretch, a = d.turn_lower, b = d.turn_upper;
+    const double stretched = 0.5 * (c->stretch * p.x * p.x + c->shear * (p.y * p.y + p.z * p.z));
+    const double twisted = 0.5 * c->twist * (a.x - b.x) * (a.x - b.x);
+    const double sheared = c->bend_shear * (p.z * (a.y + b.y) - p.y * (a.z + b.z));
+    const double bent = a.y * a.y + a.y * b.y + b.y * b.y + a.z * a.z + a.z * b.z + b.z * b.z;
+    return stretched + twisted + sheared + c->bend * bent;
+}
+
+struct tension bonds_tension(const struct body *body)
+{
+    const int64_t n = body->census.n_bonds;
+    struct tension tension = {0.0, n > 0 ? INFINITY : 0.0, n > 0 ? -INFINITY : 0.0};
+    for (int64_t i = 0; i < n; i++) {
+        const struct bond *bond = &body->bonds[i];
+        const struct pose pose = pose_of(bond, &body->voxels[bond->lower], &body->voxels[bond->upper]);
+        const double strain = pose.deformation.stretch.x / body->model->settings.voxel_size;
+        tension.energy += spring_energy(bond->coupling, pose.deformation);
+        tension.least = fmin(tension.least, strain);
+        tension.greatest = fmax(tension.greatest, strain);
+    }
+    return tension;
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent  # relative to the project's root, as setuptools wants its sources
-SOURCES = ("status.c", "model.c", "body.c", "bond.c", "contact.c", "motion.c", "simulate.c")
+SOURCES = tuple(sorted(path.name for path in HERE.glob("*.c")))
 # No contraction to fused multiply-adds: results would depend on the compiler's choice of them.
 FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 SANITIZE_FLAGS = (

@@ -1,5 +1,5 @@
 /* What the files of the solver share: vectors, quaternions, the derived constants and the state of one body.
- * Section numbers refer to the description of the physics. */
+ * Section numbers are those of docs/physics.md. */
 #ifndef VOX_INTERNAL_H
 #define VOX_INTERNAL_H
 
@@ -69,9 +69,13 @@ static inline struct vec quat_rotate(struct quat q, struct vec v)
     return vec_add(vec_scale(q.w * q.w - vec_dot(axis, axis), v), vec_add(along, across));
 }
 
+/* A voxel's size stays within these (section 4), in lattice edges. */
+#define SMALLEST_SCALE 0.1
+#define LARGEST_SCALE 3.0
+
 /* ---- constants of a model --------------------------------------------------------------------------------- */
 
-/* A voxel of one material (sections 1, 4 and 6). */
+/* A voxel of one material (sections 1, 4, 6 and 9). */
 struct substance {
     double youngs_modulus;   /* Pa */
     double poisson_ratio;
@@ -80,6 +84,9 @@ struct substance {
     double strain_amplitude; /* of the actuation */
     double slow_drag;        /* N s/m */
     double slow_spin_rate;   /* 1/s, share of the angular momentum lost to slow damping */
+    double floor_stiffness;  /* N/m */
+    double floor_drag;       /* N s/m */
+    double static_friction, dynamic_friction;
 };
 
 /* Damping of one end of a bond (section 6). */
@@ -97,18 +104,22 @@ struct coupling {
     double bend;       /* b3, N m */
     struct damper lower, upper;
     double fastest;    /* larger of stretch / mass of the two ends, 1/s2 */
+    double touch_drag; /* N s/m, of voxels that touch */
+    double touch_friction;
 };
 
 struct vox_model {
     struct vox_settings settings;
     int64_t cells;
     double rest_scale;           /* size / lattice edge without actuation: the edge was rounded to single precision */
+    double largest_size;         /* m, of any voxel at any time */
     double too_far;              /* m, a voxel further from its start has diverged */
+    double floor_rise;           /* of the floor along x, m/m */
     int16_t of_code[VOX_MAX_CODES]; /* index into substances, or -1 */
     int32_t n_substances;
     struct substance *substances;
     struct coupling *couplings;  /* [n_substances][n_substances] */
-    uint8_t *clamped;            /* [cells] */
+    uint8_t *fixed;              /* [cells] */
 };
 
 static inline const struct coupling *coupling_of(const vox_model *model, const struct substance *lower,
@@ -139,8 +150,13 @@ struct voxel {
     double phase;            /* cycles */
     const struct substance *substance;
     int32_t cell;            /* index in the canvas */
-    bool clamped;
+    uint8_t fixed;           /* degrees of freedom that it has not */
 };
+
+static inline struct vec velocity_of(const struct voxel *voxel)
+{
+    return vec_scale(1.0 / voxel->substance->mass, voxel->momentum);
+}
 
 enum axis { AXIS_X, AXIS_Y, AXIS_Z };
 
@@ -155,7 +171,7 @@ struct bond {
 
 struct contact {
     int32_t first, second; /* voxels, first < second */
-    double stiffness;      /* N/m */
+    const struct coupling *coupling;
 };
 
 /* A voxel that may touch another. */
@@ -176,6 +192,21 @@ struct contacts {
     enum axis longest;
 };
 
+/* A face of a voxel that is exposed to the fluid. */
+struct facet {
+    int32_t voxel;
+    int32_t corners[4]; /* counter-clockwise, seen from outside */
+};
+
+/* The outer surface of a body: where voxels meet, their corners are one. */
+struct surface {
+    int64_t n_corners, n_facets;
+    int32_t (*corners_of)[8]; /* [n_voxels] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z */
+    double *share;            /* [n_corners] 1 / number of voxels that meet there */
+    struct vec *corners;      /* [n_corners] m */
+    struct facet *facets;
+};
+
 struct body {
     const vox_model *model;
     struct census census;
@@ -184,6 +215,7 @@ struct body {
     int32_t *voxel_in; /* [cells] index of the voxel, or -1 */
     int32_t (*bonded)[6]; /* [n_voxels] voxels bonded to each along -x, +x, -y, +y, -z, +z, or -1 */
     struct contacts contacts;
+    struct surface surface;
     double time;       /* s */
     double top_speed;  /* m/s, after the step before */
 };
@@ -198,13 +230,23 @@ enum vox_status body_create(struct body *body, const vox_model *model, const str
                             const uint8_t *material, const double *phase_cycles);
 void body_destroy(struct body *body);
 
+/* Index of the cell one further along an axis (upwards or not), or -1 at the end of the canvas. */
+int64_t cell_beside(const vox_model *model, int64_t cell, enum axis axis, bool upwards);
+
 /* bond.c */
 
 /* Adds the forces and torques of all bonds to their voxels. `per_second` is 1/dt, or 0 on the first step, which has no
  * rates yet. False if a bond has diverged. */
 bool bonds_apply(struct body *body, double per_second);
 
-/* contact.c */
+/* What the bonds store, and how far they are stretched. */
+struct tension {
+    double energy;         /* J */
+    double least, greatest; /* strain */
+};
+struct tension bonds_tension(const struct body *body);
+
+/* contact_list.c */
 
 enum vox_status contacts_create(struct body *body);
 void contacts_destroy(struct contacts *contacts);
@@ -212,12 +254,38 @@ void contacts_destroy(struct contacts *contacts);
 /* Makes the list of possible contacts anew where that is due; false if they do not fit. */
 bool contacts_refresh(struct body *body, bool first_step);
 
+/* contact_force.c */
+
 /* Adds the forces of all contacts to their voxels. */
 void contacts_apply(struct body *body);
+
+/* surface.c */
+
+enum vox_status surface_create(struct body *body);
+void surface_destroy(struct surface *surface);
+
+/* fluid.c */
+
+/* Adds the drag of the fluid to the voxels at the surface. */
+void fluid_apply(struct body *body);
+
+/* floor.c */
+
+/* Adds the push and the friction of the floor to the force on a voxel, which has all others already; a voxel that
+ * sticks loses its lateral momentum. */
+struct vec floor_apply(const vox_model *model, struct voxel *voxel, struct vec force, double dt);
 
 /* motion.c */
 
 /* Moves every voxel by one time step under the forces that were added to it. False if one has diverged. */
 bool voxels_advance(struct body *body);
+
+/* sample.c */
+
+/* Writes one sample of every track that is wanted; `row` counts the samples of the whole batch. */
+void sample_write(const struct body *body, const struct vox_tracks *tracks, int64_t row);
+
+/* Writes that there is nothing. */
+void sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks, int64_t begin, int64_t end);
 
 #endif

@@ -1,8 +1,12 @@
-/* Settings and materials: their checks, and the constants that follow from them (sections 1, 5 and 6). */
+/* Settings and materials: their checks, and the constants that follow from them (sections 1, 5, 6 and 9). */
 #include <stdlib.h>
-#include <string.h>
 
 #include "internal.h"
+
+static const int64_t MOST_SUBSTEPS = 1000;
+static const double STEEPEST = 89.0; /* degrees */
+static const double LONGEST = 1e9;   /* s */
+static const double RADIANS = 3.14159265358979323846 / 180.0;
 
 static bool positive(double x)
 {
@@ -26,27 +30,60 @@ static bool canvas_fits(const struct vox_settings *s)
            s->nz <= most / (s->nx * s->ny);
 }
 
-static enum vox_status check_settings(const struct vox_settings *s)
+static enum vox_status check_time(const struct vox_settings *s)
 {
-    if (!canvas_fits(s)) return VOX_BAD_CANVAS;
-    if (!within(1e-6, s->voxel_size, 1e6)) return VOX_BAD_VOXEL_SIZE;
     if (!(s->time_step_fraction > 0.0 && s->time_step_fraction <= 1.0)) return VOX_BAD_TIME_STEP_FRACTION;
-    if (!positive(s->duration)) return VOX_BAD_DURATION;
+    if (s->substeps < 1 || s->substeps > MOST_SUBSTEPS) return VOX_BAD_SUBSTEPS;
+    if (s->step_limit < 1) return VOX_BAD_STEP_LIMIT;
+    if (!(s->duration > 0.0 && s->duration <= LONGEST)) return VOX_BAD_DURATION;
     if (!isfinite(s->temperature_amplitude)) return VOX_BAD_TEMPERATURE_AMPLITUDE;
-    if (!positive(s->period)) return VOX_BAD_PERIOD;
+    if (!within(1.0 / LONGEST, s->period, LONGEST)) return VOX_BAD_PERIOD;
+    if (!within(0.0, s->start_time, LONGEST)) return VOX_BAD_START_TIME;
+    if (!within(0.0, s->ramp, LONGEST)) return VOX_BAD_RAMP;
+    return VOX_OK;
+}
+
+static enum vox_status check_surroundings(const struct vox_settings *s)
+{
+    if (!isfinite(s->gravity)) return VOX_BAD_GRAVITY;
+    if (!within(-STEEPEST, s->floor_slope, STEEPEST)) return VOX_BAD_FLOOR_SLOPE;
+    if (!not_negative(s->fluid_drag)) return VOX_BAD_FLUID_DRAG;
     if (!not_negative(s->bond_damping)) return VOX_BAD_BOND_DAMPING;
     if (!not_negative(s->slow_damping)) return VOX_BAD_SLOW_DAMPING;
+    if (!not_negative(s->floor_damping)) return VOX_BAD_FLOOR_DAMPING;
+    if (!not_negative(s->contact_damping)) return VOX_BAD_CONTACT_DAMPING;
+    return VOX_OK;
+}
+
+static enum vox_status check_contacts(const struct vox_settings *s)
+{
+    if (!within(1.0, s->collision_envelope, 2.0)) return VOX_BAD_COLLISION_ENVELOPE;
     if (!within(1.0, s->collision_horizon, 4.0)) return VOX_BAD_COLLISION_HORIZON;
     if (!within(1.0, s->collision_list_factor, 2.0)) return VOX_BAD_COLLISION_LIST_FACTOR;
     return VOX_OK;
 }
 
+static enum vox_status check_settings(const struct vox_settings *s)
+{
+    enum vox_status status;
+    if (!canvas_fits(s)) return VOX_BAD_CANVAS;
+    if (!within(1e-6, s->voxel_size, 1e6)) return VOX_BAD_VOXEL_SIZE;
+    if ((status = check_time(s)) != VOX_OK) return status;
+    if ((status = check_surroundings(s)) != VOX_OK) return status;
+    if ((status = check_contacts(s)) != VOX_OK) return status;
+    if (!positive(s->largest_strain)) return VOX_BAD_LARGEST_STRAIN;
+    if (!positive(s->largest_distance)) return VOX_BAD_LARGEST_DISTANCE;
+    return VOX_OK;
+}
+
 static enum vox_status check_material(const struct vox_material *m, const struct vox_settings *s)
 {
-    if (!positive(m->youngs_modulus)) return VOX_BAD_YOUNGS_MODULUS;
+    if (!within(1e-6, m->youngs_modulus, 1e18)) return VOX_BAD_YOUNGS_MODULUS;
     if (!(m->poisson_ratio >= 0.0 && m->poisson_ratio < 0.5)) return VOX_BAD_POISSON_RATIO;
-    if (!positive(m->density)) return VOX_BAD_DENSITY;
+    if (!within(1e-6, m->density, 1e18)) return VOX_BAD_DENSITY;
     if (!isfinite(m->expansion) || !isfinite(m->expansion * s->temperature_amplitude)) return VOX_BAD_EXPANSION;
+    if (!not_negative(m->static_friction)) return VOX_BAD_STATIC_FRICTION;
+    if (!not_negative(m->dynamic_friction)) return VOX_BAD_DYNAMIC_FRICTION;
     return VOX_OK;
 }
 
@@ -65,6 +102,10 @@ static struct substance substance_of(const struct vox_material *m, const struct 
         .strain_amplitude = m->expansion * s->temperature_amplitude,
         .slow_drag = s->slow_damping * critical_drag,
         .slow_spin_rate = 10.0 * s->slow_damping * critical_spin_drag / inertia,
+        .floor_stiffness = 2.0 * m->youngs_modulus * edge,
+        .floor_drag = s->floor_damping * critical_drag,
+        .static_friction = m->static_friction,
+        .dynamic_friction = m->dynamic_friction,
     };
 }
 
@@ -105,6 +146,9 @@ static struct coupling coupling_between(const struct substance *lower, const str
     c.lower = damper_of(&c, lower, s);
     c.upper = damper_of(&c, upper, s);
     c.fastest = fmax(c.stretch / lower->mass, c.stretch / upper->mass);
+    const double reduced_mass = 0.5 * harmonic_mean(lower->mass, upper->mass);
+    c.touch_drag = s->contact_damping * 2.0 * sqrt(c.stretch * reduced_mass);
+    c.touch_friction = s->contact_friction ? 0.5 * (lower->dynamic_friction + upper->dynamic_friction) : 0.0;
     return c;
 }
 
@@ -124,22 +168,45 @@ static enum vox_status read_palette(vox_model *model, const struct vox_material 
     return model->n_substances > 0 ? VOX_OK : VOX_BAD_PALETTE;
 }
 
+/* No actuation makes a voxel larger (section 4). */
+static double largest_size(const vox_model *model)
+{
+    double amplitude = 0.0;
+    for (int32_t i = 0; i < model->n_substances; i++)
+        amplitude = fmax(amplitude, fabs(model->substances[i].strain_amplitude));
+    return model->settings.voxel_size * fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
+}
+
 static void derive_constants(vox_model *model, const struct vox_material *palette)
 {
     const struct vox_settings *s = &model->settings;
     model->rest_scale = (double)(float)s->voxel_size / s->voxel_size;
-    model->too_far = 100.0 * s->voxel_size * (double)(s->nx > s->ny ? (s->nx > s->nz ? s->nx : s->nz)
-                                                                     : (s->ny > s->nz ? s->ny : s->nz));
+    model->too_far = s->largest_distance * s->voxel_size * (double)(s->nx > s->ny ? (s->nx > s->nz ? s->nx : s->nz)
+                                                                                  : (s->ny > s->nz ? s->ny : s->nz));
+    model->floor_rise = tan(RADIANS * s->floor_slope);
     for (int32_t code = 0; code < VOX_MAX_CODES; code++)
         if (model->of_code[code] >= 0) model->substances[model->of_code[code]] = substance_of(&palette[code], s);
     for (int32_t i = 0; i < model->n_substances; i++)
         for (int32_t j = 0; j < model->n_substances; j++)
             model->couplings[i * model->n_substances + j] =
                 coupling_between(&model->substances[i], &model->substances[j], s);
+    model->largest_size = largest_size(model);
+}
+
+static enum vox_status read_fixed(vox_model *model, const uint8_t *fixed, int64_t *culprit)
+{
+    for (int64_t cell = 0; cell < model->cells; cell++) {
+        if (fixed[cell] > VOX_FIX_ALL) {
+            *culprit = cell;
+            return VOX_BAD_FIXED;
+        }
+        model->fixed[cell] = fixed[cell];
+    }
+    return VOX_OK;
 }
 
 static enum vox_status fill(vox_model *model, const struct vox_material *palette, int32_t n_codes,
-                            const uint8_t *clamped, int64_t *culprit)
+                            const uint8_t *fixed, int64_t *culprit)
 {
     const enum vox_status status = read_palette(model, palette, n_codes, culprit);
     if (status != VOX_OK) return status;
@@ -147,15 +214,14 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     model->cells = model->settings.nx * model->settings.ny * model->settings.nz;
     model->substances = malloc(n * sizeof *model->substances);
     model->couplings = malloc(n * n * sizeof *model->couplings);
-    model->clamped = calloc((size_t)model->cells, 1);
-    if (!model->substances || !model->couplings || !model->clamped) return VOX_NO_MEMORY;
+    model->fixed = calloc((size_t)model->cells, 1);
+    if (!model->substances || !model->couplings || !model->fixed) return VOX_NO_MEMORY;
     derive_constants(model, palette);
-    if (clamped) memcpy(model->clamped, clamped, (size_t)model->cells);
-    return VOX_OK;
+    return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }
 
 enum vox_status vox_model_create(const struct vox_settings *settings, const struct vox_material *palette,
-                                 int32_t n_codes, const uint8_t *clamped, vox_model **model, int64_t *culprit)
+                                 int32_t n_codes, const uint8_t *fixed, vox_model **model, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;
@@ -169,7 +235,7 @@ enum vox_status vox_model_create(const struct vox_settings *settings, const stru
     vox_model *made = calloc(1, sizeof *made);
     if (!made) return VOX_NO_MEMORY;
     made->settings = *settings;
-    status = fill(made, palette, n_codes, clamped, culprit);
+    status = fill(made, palette, n_codes, fixed, culprit);
     if (status != VOX_OK) {
         vox_model_destroy(made);
         return status;
@@ -183,6 +249,6 @@ void vox_model_destroy(vox_model *model)
     if (!model) return;
     free(model->substances);
     free(model->couplings);
-    free(model->clamped);
+    free(model->fixed);
     free(model);
 }

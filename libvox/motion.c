@@ -2,17 +2,26 @@
 #include "internal.h"
 
 static const double TWO_PI = 6.283185005187988; /* single precision */
-static const double SMALLEST_SIZE = 0.1, LARGEST_SIZE = 3.0; /* lattice edges */
+static const double SETTLING_TIME = 0.125; /* s, of the rounded edge before the actuation begins */
+
+/* Share of the amplitude that is reached at a time after the start. */
+static double ramp_at(double time, const struct vox_settings *s)
+{
+    const double since = time - s->start_time;
+    return since < s->ramp ? since / s->ramp : 1.0;
+}
 
 /* Size at a time; a size beyond the limits leaves the old one as it is. */
 static double size_at(double time, const struct voxel *voxel, const vox_model *model)
 {
-    const double edge = model->settings.voxel_size, amplitude = voxel->substance->strain_amplitude;
+    const struct vox_settings *s = &model->settings;
+    const double edge = s->voxel_size, amplitude = voxel->substance->strain_amplitude;
+    if (time < s->start_time) return edge * (1.0 + (model->rest_scale - 1.0) * fmin(1.0, time / SETTLING_TIME));
     if (amplitude == 0.0) return edge * model->rest_scale;
-    const double cycles = time / model->settings.period + voxel->phase;
-    const double size = edge * (model->rest_scale + amplitude * sin(TWO_PI * cycles));
-    if (size < SMALLEST_SIZE * edge && size < voxel->size) return voxel->size;
-    if (size > LARGEST_SIZE * edge && size > voxel->size) return voxel->size;
+    const double cycles = time / s->period + voxel->phase;
+    const double size = edge * (model->rest_scale + ramp_at(time, s) * amplitude * sin(TWO_PI * cycles));
+    if (size < SMALLEST_SCALE * edge && size < voxel->size) return voxel->size;
+    if (size > LARGEST_SCALE * edge && size > voxel->size) return voxel->size;
     return size;
 }
 
@@ -26,21 +35,40 @@ static struct quat turned(struct quat q, struct vec spin_rate, double dt)
     return (struct quat){r.w * norm, r.x * norm, r.y * norm, r.z * norm};
 }
 
-/* Semi-implicit Euler: the new momentum moves the voxel. Loads other than those of bonds and contacts join the force
- * here. Returns the speed. */
-static double move(struct voxel *voxel, double dt)
+static void turn(struct voxel *voxel, double dt)
 {
     const struct substance *s = voxel->substance;
-    const struct vec slow_drag = vec_scale(-s->slow_drag / s->mass, voxel->momentum);
-    const struct vec force = vec_add(slow_drag, voxel->force);
-
-    voxel->momentum = vec_add(voxel->momentum, vec_scale(dt, force));
-    const struct vec velocity = vec_scale(1.0 / s->mass, voxel->momentum);
-    voxel->position = vec_add(voxel->position, vec_scale(dt, velocity));
-
     voxel->spin = vec_add(voxel->spin, vec_scale(dt, voxel->torque));
     voxel->spin = vec_scale(1.0 - s->slow_spin_rate * dt, voxel->spin);
     voxel->orientation = turned(voxel->orientation, vec_scale(1.0 / s->inertia, voxel->spin), dt);
+}
+
+/* A voxel keeps the coordinates that it is not free to change. Rotation is held about all axes or about none. */
+static void hold(struct voxel *voxel)
+{
+    const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z;
+    if (voxel->fixed & VOX_FIX_X) voxel->position.x = voxel->start.x, voxel->momentum.x = 0.0;
+    if (voxel->fixed & VOX_FIX_Y) voxel->position.y = voxel->start.y, voxel->momentum.y = 0.0;
+    if (voxel->fixed & VOX_FIX_Z) voxel->position.z = voxel->start.z, voxel->momentum.z = 0.0;
+    if ((voxel->fixed & rotation) != rotation) return;
+    voxel->orientation = (struct quat){1.0, 0.0, 0.0, 0.0};
+    voxel->spin = (struct vec){0.0, 0.0, 0.0};
+}
+
+/* Semi-implicit Euler: the new momentum moves the voxel. The floor comes last, since friction looks at all other
+ * forces. Returns the speed. */
+static double move(struct voxel *voxel, const vox_model *model, double dt)
+{
+    const struct substance *s = voxel->substance;
+    struct vec force = vec_add(vec_scale(-s->slow_drag / s->mass, voxel->momentum), voxel->force);
+    force.z += s->mass * model->settings.gravity;
+    if (model->settings.floor) force = floor_apply(model, voxel, force, dt);
+
+    voxel->momentum = vec_add(voxel->momentum, vec_scale(dt, force));
+    voxel->position = vec_add(voxel->position, vec_scale(dt, velocity_of(voxel)));
+    turn(voxel, dt);
+    if (voxel->fixed) hold(voxel);
+    const struct vec velocity = velocity_of(voxel);
     return sqrt(vec_dot(velocity, velocity));
 }
 
@@ -51,11 +79,12 @@ bool voxels_advance(struct body *body)
     body->top_speed = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         struct voxel *voxel = &body->voxels[i];
-        if (!voxel->clamped) {
-            const double speed = move(voxel, dt);
+        if (voxel->fixed != VOX_FIX_ALL) {
+            const double speed = move(voxel, body->model, dt);
             if (speed > body->top_speed) body->top_speed = speed;
             const struct vec way = vec_sub(voxel->position, voxel->start);
             fine &= vec_dot(way, way) <= too_far * too_far; /* false for a NaN */
+            fine &= isfinite(vec_dot(voxel->spin, voxel->spin) / voxel->substance->inertia);
         }
         voxel->size = size_at(body->time, voxel, body->model);
         voxel->force = voxel->torque = (struct vec){0};

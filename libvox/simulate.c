@@ -54,68 +54,9 @@ static enum vox_status check_body(const vox_model *model, const uint8_t *materia
     const enum vox_status status = body_census(model, material, &census);
     if (status != VOX_OK) return status;
     if (!phases_are_sane(model, material, phase_cycles)) return VOX_BAD_PHASE;
+    if (!ascending(n_samples, sample_steps)) return VOX_BAD_SAMPLE_ORDER;
     if (n_samples > 0 && sample_steps[n_samples - 1] > census.steps) return VOX_SAMPLE_OUT_OF_RANGE;
     return VOX_OK;
-}
-
-static void write_vec(double *out, struct vec v)
-{
-    out[0] = v.x;
-    out[1] = v.y;
-    out[2] = v.z;
-}
-
-/* Mass-weighted mean of the voxels whose initial x is at least so large. */
-static struct vec mean_position(const struct body *body, double from_x)
-{
-    struct vec moment = {0};
-    double mass = 0.0;
-    for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const struct voxel *voxel = &body->voxels[i];
-        if (voxel->start.x < from_x) continue;
-        moment = vec_add(moment, vec_scale(voxel->substance->mass, voxel->position));
-        mass += voxel->substance->mass;
-    }
-    return vec_scale(1.0 / mass, moment);
-}
-
-static double largest_start_x(const struct body *body)
-{
-    double largest = 0.0;
-    for (int64_t i = 0; i < body->census.n_voxels; i++) largest = fmax(largest, body->voxels[i].start.x);
-    return largest;
-}
-
-static void write_voxels(const struct body *body, double *out)
-{
-    const struct vec nowhere = {NAN, NAN, NAN};
-    for (int64_t cell = 0; cell < body->model->cells; cell++) {
-        const int32_t voxel = body->voxel_in[cell];
-        write_vec(out + 3 * cell, voxel < 0 ? nowhere : body->voxels[voxel].position);
-    }
-}
-
-/* One sample of every track that is wanted; `row` counts the samples of the whole batch. */
-static void write_sample(const struct body *body, const struct vox_tracks *tracks, int64_t row)
-{
-    if (tracks->tip) write_vec(tracks->tip + 3 * row, body->voxels[body->census.n_voxels - 1].position);
-    if (tracks->face) write_vec(tracks->face + 3 * row, mean_position(body, largest_start_x(body)));
-    if (tracks->body) write_vec(tracks->body + 3 * row, mean_position(body, 0.0));
-    if (tracks->voxels) write_voxels(body, tracks->voxels + 3 * row * body->model->cells);
-}
-
-static void write_nan(double *track, int64_t width, int64_t begin, int64_t end)
-{
-    if (!track) return;
-    for (int64_t i = width * begin; i < width * end; i++) track[i] = NAN;
-}
-
-static void write_nothing(const vox_model *model, const struct vox_tracks *tracks, int64_t begin, int64_t end)
-{
-    write_nan(tracks->tip, 3, begin, end);
-    write_nan(tracks->face, 3, begin, end);
-    write_nan(tracks->body, 3, begin, end);
-    write_nan(tracks->voxels, 3 * model->cells, begin, end);
 }
 
 /* False if the body diverged. All forces are complete before any voxel moves. */
@@ -125,6 +66,7 @@ static bool advance(struct body *body, bool first_step)
     if (collides && !contacts_refresh(body, first_step)) return false;
     if (!bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt)) return false;
     if (collides) contacts_apply(body);
+    if (body->model->settings.fluid_drag > 0.0) fluid_apply(body);
     return voxels_advance(body);
 }
 
@@ -136,12 +78,12 @@ static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_s
     const int64_t end = row + n_samples;
     for (int64_t step = 0;; step++) {
         if (row < end && *sample_steps == step) {
-            write_sample(body, tracks, row++);
+            sample_write(body, tracks, row++);
             sample_steps++;
         }
         if (step == body->census.steps) return 0;
         if (advance(body, step == 0)) continue;
-        write_nothing(body->model, tracks, row, end);
+        sample_write_nothing(body->model, tracks, row, end);
         return step + 1;
     }
 }
@@ -160,6 +102,12 @@ static enum vox_status simulate_one(const vox_model *model, const uint8_t *mater
     return status;
 }
 
+/* The row of a body; there may be no array where there is no sample. */
+static const int64_t *own_steps(const int64_t *sample_steps, int64_t body, int64_t n_samples)
+{
+    return n_samples > 0 ? sample_steps + body * n_samples : sample_steps;
+}
+
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples, const int64_t *sample_steps,
                              const struct vox_tracks *tracks, int64_t *diverged_step, int64_t *culprit)
@@ -167,20 +115,20 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
     int64_t nobody;
     if (!culprit) culprit = &nobody;
     *culprit = -1;
-    if (!model || !tracks || (n_samples > 0 && !sample_steps)) return VOX_NULL_ARGUMENT;
+    if (!model || !tracks) return VOX_NULL_ARGUMENT;
     if (n_bodies > 0 && (!material || !phase_cycles || !diverged_step)) return VOX_NULL_ARGUMENT;
+    if (n_bodies > 0 && n_samples > 0 && !sample_steps) return VOX_NULL_ARGUMENT;
     if (!batch_fits(n_bodies, n_samples, model->cells)) return VOX_BAD_BATCH;
-    if (!ascending(n_samples, sample_steps)) return VOX_BAD_SAMPLE_ORDER;
     enum vox_status status = VOX_OK;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         const int64_t at = i * model->cells;
-        status = check_body(model, material + at, phase_cycles + at, n_samples, sample_steps);
+        status = check_body(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples));
         *culprit = i;
     }
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         const int64_t at = i * model->cells;
-        status = simulate_one(model, material + at, phase_cycles + at, n_samples, sample_steps, tracks, i * n_samples,
-                              &diverged_step[i]);
+        status = simulate_one(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples),
+                              tracks, i * n_samples, &diverged_step[i]);
         *culprit = i;
     }
     if (status == VOX_OK) *culprit = -1;

@@ -6,7 +6,7 @@ releases the GIL while it works, and keeps no state, so threads may share a mode
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, get_args
 
 import attrs
 import numpy as np
@@ -14,12 +14,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from evoframe_libvox._vox import ffi, lib
 
-__all__ = ["KERNEL", "Material", "Model", "Result", "Settings", "Track"]
+__all__ = ["FIX_ALL", "KERNEL", "Material", "Model", "Result", "Settings", "Track"]
 
 KERNEL: Final = "scalar"
 """Name of the implementation that computes, to be recorded with its results."""
 
-Track = Literal["tip", "face", "body", "voxels"]
+FIX_ALL: Final = 63
+"""All six degrees of freedom of a voxel: the bits 1, 2, 4 for its position along x, y, z and 8, 16, 32 for its
+rotation about them, which is held only if all three of its bits are set."""
+
+Track = Literal["tip", "face", "body", "voxels", "energy", "strain", "momentum"]
+
+
+_ROUNDING: Final = 1e-12  # relative; a time that is a multiple of the time step is met, not missed
 
 
 @attrs.frozen
@@ -27,17 +34,21 @@ class Material:
     """What a voxel is made of.
 
     Attributes:
-        youngs_modulus: Pa; positive.
+        youngs_modulus: Pa; 1e-6 to 1e18.
         poisson_ratio: At least 0, below 0.5. It acts on the twist of bonds only.
-        density: kg/m3; positive.
+        density: kg/m3; 1e-6 to 1e18.
         expansion: Linear thermal expansion per degree; 0 for a passive material, negative for one that
             contracts when the others expand.
+        static_friction: Share of the floor's push up to which a voxel that rests on it sticks.
+        dynamic_friction: Share of the push that brakes a voxel which slides on the floor or on another.
     """
 
     youngs_modulus: float
     poisson_ratio: float
     density: float
     expansion: float
+    static_friction: float = 0.0
+    dynamic_friction: float = 0.0
 
 
 @attrs.frozen(kw_only=True)
@@ -46,30 +57,69 @@ class Settings:
 
     Attributes:
         voxel_size: Edge of the lattice, m.
-        duration: Simulated time, s.
+        duration: Simulated time, s; at most 1e9, as all times.
         temperature_amplitude: Degrees, the base temperature already subtracted. A voxel's linear strain is
             ``expansion * temperature_amplitude * sin(2 pi (t / period + phase))``.
         period: Of the actuation, s.
+        start_time: When the actuation begins, s; its clock runs from time 0 all the same, so that a voxel may
+            change its size with a jump.
+        ramp: Seconds from then until the actuation has its full amplitude, in proportion to time.
+        gravity: Acceleration along z, m/s2; negative pulls down.
+        floor: Whether there is one: the plane z = 0, or z = x tan(floor_slope). Its push is vertical all the
+            same.
+        floor_slope: Degrees, from -89 to 89.
+        fluid_drag: Half the density of the surrounding fluid times its drag coefficient, kg/m3: a facet of the
+            outer surface is pushed back with this times its area and the square of its speed along its normal.
         time_step_fraction: Of the largest stable time step; above 0, at most 1.
+        substeps: How many steps each such time step is made in; the number of steps is a multiple of it.
         bond_damping: Damping of bonds, as a fraction of critical.
-        slow_damping: Damping against the ground, as a fraction of critical.
+        slow_damping: Damping of all motion against the ground, as a fraction of critical.
+        floor_damping: Damping of the floor's push, as a fraction of critical.
+        contact_damping: Damping of the push between voxels that touch, as a fraction of critical; the original
+            engine has none.
         self_collision: Whether the voxels of a body repel each other.
+        contact_friction: Whether they brake each other too, with the mean of their dynamic frictions; the
+            original engine does not.
+        complete_contacts: Whether the list of possible contacts misses nothing. The original engine's may
+            come late: it goes by the size of one voxel of the two, and by what touching voxels would need.
+        collision_envelope: Voxels repel each other closer than this many of their mean sizes: 1.5 in the
+            original engine, 1 where they really touch; 1 to 2.
         collision_horizon: Reach of the list of possible contacts, in voxel sizes; 1 to 4. The list is made
             anew when the fastest voxel may have moved by more than ``(horizon - 1) / 2`` lattice edges.
-        collision_list_factor: The list reaches at most ``factor * horizon`` lattice edges and leaves out
-            voxels within ``floor(factor * horizon)`` bonds of each other; 1 to 2.
+        collision_list_factor: The list leaves out voxels within ``floor(factor * horizon)`` bonds of each
+            other, and the original engine's what is beyond ``factor * horizon`` lattice edges; 1 to 2.
+        step_limit: A body that needs more steps is refused.
+        largest_strain: A body with a bond stretched or compressed by more than this many lattice edges has
+            diverged.
+        largest_distance: A body with a voxel further from its start than this many times the longest edge of
+            the canvas has diverged.
     """
 
     voxel_size: float
     duration: float
     temperature_amplitude: float
     period: float
+    start_time: float = 0.0
+    ramp: float = 0.0
+    gravity: float = 0.0
+    floor: bool = False
+    floor_slope: float = 0.0
+    fluid_drag: float = 0.0
     time_step_fraction: float = 0.9
+    substeps: int = 1
     bond_damping: float = 1.0
     slow_damping: float = 0.01
+    floor_damping: float = 0.8
+    contact_damping: float = 0.0
     self_collision: bool = True
+    contact_friction: bool = False
+    complete_contacts: bool = False
+    collision_envelope: float = 1.5
     collision_horizon: float = 2.0
     collision_list_factor: float = 1.5
+    step_limit: int = 10_000_000
+    largest_strain: float = 100.0
+    largest_distance: float = 100.0
 
 
 @attrs.frozen(eq=False)
@@ -77,10 +127,13 @@ class Result:
     """What became of a batch of bodies.
 
     Attributes:
-        tracks: Positions in m. ``tip`` (the last occupied voxel in the order x fastest, then y, then z),
-            ``face`` (the mass-weighted mean of the voxels with the largest initial x) and ``body`` (that of
-            all voxels) are ``float64[N, S, 3]``; ``voxels`` is ``float64[N, S, X, Y, Z, 3]``, NaN in empty
-            cells. From the step at which a body diverged its samples are NaN.
+        tracks: What was asked for, NaN from the step at which a body diverged. Positions in m: ``tip`` (the
+            last occupied voxel in the order x fastest, then y, then z), ``face`` (the mass-weighted mean of
+            the voxels with the largest initial x) and ``body`` (that of all voxels) are ``float64[N, S, 3]``;
+            ``voxels`` is ``float64[N, S, X, Y, Z, 3]``, NaN in empty cells. ``energy`` is
+            ``float64[N, S, 2]``, strain energy of the bonds and kinetic energy, J; ``strain`` is
+            ``float64[N, S, 2]``, the least and the greatest strain of the bonds; ``momentum`` is
+            ``float64[N, S, 6]``, linear in kg m/s and angular about the origin in kg m2/s.
         diverged_step: ``int64[N]``; 0, or the step (from 1) at which the body diverged.
     """
 
@@ -95,7 +148,7 @@ class Model:
         canvas: Cells along x, y and z.
         palette: The material of each code that a cell may have, from 1 to 255. Code 0 is an empty cell.
         settings: How bodies are simulated.
-        clamped: ``bool[X, Y, Z]``, true where a voxel is held with all its degrees of freedom.
+        fixed: ``uint8[X, Y, Z]``, the degrees of freedom that a voxel has not, as bits (see ``FIX_ALL``).
 
     Raises:
         ValueError: A setting or a material is out of its range, or an array has the wrong shape.
@@ -107,12 +160,12 @@ class Model:
         canvas: tuple[int, int, int],
         palette: Mapping[int, Material],
         settings: Settings,
-        clamped: ArrayLike,
+        fixed: ArrayLike,
     ) -> None:
         self.canvas: Final = canvas
         self.palette: Final = dict(palette)
         self.settings: Final = settings
-        held = _cells("clamped", clamped, np.bool_, canvas)
+        held = _cells("fixed", fixed, np.uint8, canvas)
         pointer = ffi.new("vox_model **")
         culprit = ffi.new("int64_t *")
         status = lib.vox_model_create(
@@ -154,12 +207,32 @@ class Model:
         _check_batch(status, culprit[0])
         return dt, steps
 
+    def steps_at(self, material: ArrayLike, times: Sequence[float] | NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the steps after which each body of a batch is first at or past given times.
+
+        Args:
+            material: ``uint8[N, X, Y, Z]``, material codes.
+            times: ``float64[S]``, s, not negative and within the duration.
+
+        Returns:
+            ``int64[N, S]``, to be given to :meth:`simulate`; two times may fall in one step.
+
+        Raises:
+            ValueError: A time is beyond the simulation, or a body cannot be simulated.
+        """
+        wanted = _array("times", times, np.float64, (-1,))
+        outside = wanted[~((wanted >= 0.0) & (wanted <= self.settings.duration))]
+        if outside.size:
+            raise ValueError(f"times must be from 0 to the duration {self.settings.duration} s, got {outside[0]}")
+        dt, _ = self.time_steps(material)
+        return np.ceil(wanted / dt[:, None] * (1.0 - _ROUNDING)).astype(np.int64)
+
     def simulate(
         self,
         material: ArrayLike,
         phase_cycles: ArrayLike,
         sample_steps: Sequence[int] | NDArray[np.int64],
-        tracks: Iterable[Track] = ("tip", "face", "body", "voxels"),
+        tracks: Iterable[Track] = get_args(Track),
     ) -> Result:
         """Simulate a batch of bodies, each on its own and to the end of the duration.
 
@@ -167,8 +240,9 @@ class Model:
             material: ``uint8[N, X, Y, Z]``, material codes.
             phase_cycles: ``float64[N, X, Y, Z]``, phase lead of each voxel in cycles, at most 1e6 either way;
                 what stands at empty and passive cells does not matter.
-            sample_steps: ``int64[S]``, strictly ascending, the steps after which positions are wanted; 0 is
-                the initial state. No body may have fewer steps than the last.
+            sample_steps: ``int64[S]``, or ``int64[N, S]`` for each body its own; strictly ascending, the
+                steps after which samples are wanted (see :meth:`steps_at` for times). 0 is the initial state,
+                and no body may have fewer steps than its last.
             tracks: What is wanted.
 
         Returns:
@@ -181,8 +255,8 @@ class Model:
         cells = _cells("material", material, np.uint8, (-1, *self.canvas))
         n = len(cells)
         phases = _cells("phase_cycles", phase_cycles, np.float64, (n, *self.canvas))
-        samples = _array("sample_steps", sample_steps, np.int64, (-1,))
-        shapes = self._track_shapes(n, len(samples))
+        samples = _samples(sample_steps, n)
+        shapes = self._track_shapes(n, samples.shape[1])
         unknown = sorted(set(tracks := tuple(tracks)) - set(shapes))
         if unknown:
             raise ValueError(f"unknown tracks {', '.join(unknown)}; there are {', '.join(shapes)}")
@@ -195,7 +269,7 @@ class Model:
             n,
             ffi.from_buffer("uint8_t[]", cells),
             ffi.from_buffer("double[]", phases),
-            len(samples),
+            samples.shape[1],
             ffi.from_buffer("int64_t[]", samples),
             ffi.new("struct vox_tracks *", pointers),
             ffi.from_buffer("int64_t[]", diverged_step),
@@ -208,19 +282,32 @@ class Model:
 
     def _track_shapes(self, n: int, samples: int) -> dict[Track, tuple[int, ...]]:
         """Return the shapes in which the solver writes."""
-        point = (n, samples, 3)
-        return {"tip": point, "face": point, "body": point, "voxels": (n, samples, *self.canvas[::-1], 3)}
+        point, two = (n, samples, 3), (n, samples, 2)
+        return {
+            **{"tip": point, "face": point, "body": point},
+            **{"voxels": (n, samples, *self.canvas[::-1], 3)},
+            **{"energy": two, "strain": two, "momentum": (n, samples, 6)},
+        }
 
     def _model_error(self, status: int, culprit: int) -> Exception:
         """Return the error for a model that could not be made, with the value that was given."""
         field = ffi.typeof("enum vox_status").elements[status].removeprefix("VOX_BAD_").lower()
         if field == "canvas":
             return _error(status, f", got {self.canvas}")
+        if field == "fixed":
+            return _error(status, f" (cell {culprit} in the order x fastest, then y, then z)")
         if culprit >= 0:
             return _error(status, f", got {getattr(self.palette[culprit], field)} for material {culprit}")
         if hasattr(self.settings, field):
             return _error(status, f", got {getattr(self.settings, field)}")
         return _error(status, "")
+
+
+def _samples(sample_steps: ArrayLike, n_bodies: int) -> NDArray[np.int64]:
+    """Return the sampled steps of each body, ``int64[N, S]``."""
+    given = np.asarray(sample_steps)
+    own = _array("sample_steps", given, np.int64, (n_bodies, -1) if given.ndim == 2 else (-1,))
+    return np.ascontiguousarray(np.broadcast_to(own, (n_bodies, own.shape[-1])))
 
 
 def _settings_fields(canvas: tuple[int, int, int], settings: Settings) -> dict[str, int | float]:

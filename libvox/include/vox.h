@@ -31,76 +31,133 @@ enum vox_status {
     VOX_BAD_CANVAS,
     VOX_BAD_VOXEL_SIZE,
     VOX_BAD_TIME_STEP_FRACTION,
+    VOX_BAD_SUBSTEPS,
+    VOX_BAD_STEP_LIMIT,
     VOX_BAD_DURATION,
     VOX_BAD_TEMPERATURE_AMPLITUDE,
     VOX_BAD_PERIOD,
+    VOX_BAD_START_TIME,
+    VOX_BAD_RAMP,
+    VOX_BAD_GRAVITY,
+    VOX_BAD_FLOOR_SLOPE,
+    VOX_BAD_FLUID_DRAG,
     VOX_BAD_BOND_DAMPING,
     VOX_BAD_SLOW_DAMPING,
+    VOX_BAD_FLOOR_DAMPING,
+    VOX_BAD_CONTACT_DAMPING,
+    VOX_BAD_COLLISION_ENVELOPE,
     VOX_BAD_COLLISION_HORIZON,
     VOX_BAD_COLLISION_LIST_FACTOR,
+    VOX_BAD_LARGEST_STRAIN,
+    VOX_BAD_LARGEST_DISTANCE,
     /* the palette [material code] */
     VOX_BAD_PALETTE,
     VOX_BAD_YOUNGS_MODULUS,
     VOX_BAD_POISSON_RATIO,
     VOX_BAD_DENSITY,
     VOX_BAD_EXPANSION,
+    VOX_BAD_STATIC_FRICTION,
+    VOX_BAD_DYNAMIC_FRICTION,
+    /* the fixed cells [cell] */
+    VOX_BAD_FIXED,
     /* a batch [body] */
     VOX_BAD_BATCH,
     VOX_UNKNOWN_MATERIAL,
     VOX_EMPTY_BODY,
     VOX_BAD_PHASE,
     VOX_BAD_TIME_STEP,
+    VOX_TOO_MANY_STEPS,
     VOX_BAD_SAMPLE_ORDER,
     VOX_SAMPLE_OUT_OF_RANGE
+};
+
+/* Degrees of freedom of a voxel that are held, as bits. Rotation is held only if all three of its bits are set. */
+enum {
+    VOX_FIX_X = 1,
+    VOX_FIX_Y = 2,
+    VOX_FIX_Z = 4,
+    VOX_FIX_ROTATION_X = 8,
+    VOX_FIX_ROTATION_Y = 16,
+    VOX_FIX_ROTATION_Z = 32,
+    VOX_FIX_ALL = 63 /* such a voxel stays where and as it is, but its size follows the actuation */
 };
 
 struct vox_settings {
     int64_t nx, ny, nz;            /* cells along each axis, each > 0 */
     double voxel_size;             /* lattice edge, m; 1e-6 .. 1e6 */
+    /* time */
     double time_step_fraction;     /* of the largest stable time step; 0 < . <= 1 */
-    double duration;               /* simulated time, s; > 0 */
+    int64_t substeps;              /* each such step is made in so many; 1 .. 1000 */
+    double duration;               /* simulated time, s; 0 < . <= 1e9 */
+    int64_t step_limit;            /* a body that needs more steps is refused; > 0 */
+    /* actuation: expansion * temperature_amplitude * sin(2 pi (t / period + phase)) is the strain of a voxel */
     double temperature_amplitude;  /* degrees, the base temperature already subtracted */
-    double period;                 /* of the actuation, s; > 0 */
-    double bond_damping;           /* fraction of critical; >= 0 */
-    double slow_damping;           /* against the ground, fraction of critical; >= 0 */
+    double period;                 /* s; 1e-9 .. 1e9 */
+    double start_time;             /* s; 0 .. 1e9; the sine runs from time 0 all the same */
+    double ramp;                   /* s from the start to the full amplitude; 0 .. 1e9 */
+    /* surroundings */
+    double gravity;                /* acceleration along z, m/s2; negative is down */
+    int32_t floor;                 /* 0: there is none; else the plane z = x tan(floor_slope) */
+    double floor_slope;            /* angular degrees; -89 .. 89; tilts the plane, but not the direction of its push */
+    double fluid_drag;             /* kg/m3, half the fluid's density times the drag coefficient; >= 0 */
+    /* damping, each as a fraction of critical; >= 0 */
+    double bond_damping;
+    double slow_damping;           /* against the ground, of all motion */
+    double floor_damping;
+    double contact_damping;        /* of voxels that touch */
+    /* contact between voxels */
     int32_t self_collision;        /* 0: bodies pass through themselves */
-    double collision_horizon;      /* reach of the list of possible contacts, in voxel sizes; 1 .. 4 */
-    double collision_list_factor;  /* the list reaches at most factor * horizon lattice edges, and leaves out voxels
-                                      within floor(factor * horizon) bonds of each other; 1 .. 2 */
+    int32_t contact_friction;      /* 0: without; else with the mean of both dynamic frictions */
+    int32_t complete_contacts;     /* 0: the original engine's list of possible contacts, which may come late; else
+                                      one that misses nothing */
+    double collision_envelope;     /* voxels touch at this many of their mean sizes; 1 .. 2 */
+    double collision_horizon;      /* reach of the list of possible contacts, in voxel sizes; 1 .. 4. It is made anew
+                                      when the fastest voxel may have moved by (horizon - 1) / 2 lattice edges */
+    double collision_list_factor;  /* the list leaves out voxels within floor(factor * horizon) bonds of each other,
+                                      and the original engine's what is beyond factor * horizon edges; 1 .. 2 */
+    /* what counts as diverged */
+    double largest_strain;         /* of a bond, either way; > 0 */
+    double largest_distance;       /* of a voxel from where it started, in longest edges of the canvas; > 0 */
 };
 
 /* One entry of a palette. The index in the palette is the material code; code 0 is an empty cell. */
 struct vox_material {
-    int32_t used;           /* 0: no cell may have this code, and the other fields are ignored */
-    double youngs_modulus;  /* Pa; > 0 */
-    double poisson_ratio;   /* 0 <= . < 0.5 */
-    double density;         /* kg/m3; > 0 */
-    double expansion;       /* linear, per degree; negative contracts when hot */
+    int32_t used;            /* 0: no cell may have this code, and the other fields are ignored */
+    double youngs_modulus;   /* Pa; 1e-6 .. 1e18 */
+    double poisson_ratio;    /* 0 <= . < 0.5 */
+    double density;          /* kg/m3; 1e-6 .. 1e18 */
+    double expansion;        /* linear, per degree; negative contracts when hot */
+    double static_friction;  /* >= 0 */
+    double dynamic_friction; /* >= 0 */
 };
 
-/* Where to write the tracks of a batch; NULL for a track that is not wanted. Positions in m; NaN from the sample at
- * which a body diverged. With S = n_samples: */
+/* Where to write the tracks of a batch; NULL for a track that is not wanted. NaN from the sample at which a body
+ * diverged. With S = n_samples: */
 struct vox_tracks {
-    double *tip;     /* [n_bodies][S][3]        the last occupied voxel in cell order */
-    double *face;    /* [n_bodies][S][3]        mass-weighted mean of the voxels with the largest initial x */
-    double *body;    /* [n_bodies][S][3]        mass-weighted mean of all voxels */
-    double *voxels;  /* [n_bodies][S][cells][3] every voxel, NaN in empty cells */
+    double *tip;      /* [n_bodies][S][3]        m, the last occupied voxel in cell order */
+    double *face;     /* [n_bodies][S][3]        m, mass-weighted mean of the voxels with the largest initial x */
+    double *body;     /* [n_bodies][S][3]        m, mass-weighted mean of all voxels */
+    double *voxels;   /* [n_bodies][S][cells][3] m, every voxel, NaN in empty cells */
+    double *energy;   /* [n_bodies][S][2]        J, strain energy of the bonds, and kinetic energy */
+    double *strain;   /* [n_bodies][S][2]        least and greatest strain of the bonds (of lattice edges), 0 without */
+    double *momentum; /* [n_bodies][S][6]        kg m/s, and kg m2/s about the origin */
 };
 
 typedef struct vox_model vox_model;
 
 /* Create a model.
  *
- * `palette` has n_codes entries (1 .. VOX_MAX_CODES). `clamped` has nx*ny*nz entries, non-zero where a voxel is held
- * with all its six degrees of freedom; NULL clamps nothing. Both are copied. *model is NULL unless VOX_OK is
- * returned. `culprit` may be NULL.
+ * `palette` has n_codes entries (1 .. VOX_MAX_CODES). `fixed` has nx*ny*nz entries, the bits of the degrees of freedom
+ * that a voxel there has not; NULL fixes nothing. Both are copied. *model is NULL unless VOX_OK is returned. `culprit`
+ * may be NULL.
  */
 enum vox_status vox_model_create(const struct vox_settings *settings, const struct vox_material *palette,
-                                 int32_t n_codes, const uint8_t *clamped, vox_model **model, int64_t *culprit);
+                                 int32_t n_codes, const uint8_t *fixed, vox_model **model, int64_t *culprit);
 
 void vox_model_destroy(vox_model *model); /* NULL is fine */
 
-/* Time step (s) and number of steps of each body: steps = floor(duration / dt) + 1. `dt` or `steps` may be NULL. */
+/* Time step (s) and number of steps of each body: (floor(duration / (substeps * dt)) + 1) * substeps. `dt` or `steps`
+ * may be NULL. */
 enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const uint8_t *material, double *dt,
                                int64_t *steps, int64_t *culprit);
 
@@ -109,12 +166,11 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
  * material      [n_bodies][cells] material codes
  * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, at most 1e6 either way; read only
  *               where the material expands
- * sample_steps  [n_samples] strictly ascending; 0 is the initial state, k the state after k steps; no body has
- *               fewer steps than the last
- * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a bond stretched by more than 100
- *               lattice edges, a voxel further than 100 times the canvas's longest edge from where it started, a
- *               NaN, or more possible contacts than min(m(m-1)/2, 256 m) for m surface voxels. Such a body stops;
- *               the others do not notice.
+ * sample_steps  [n_bodies][n_samples] strictly ascending for each body; 0 is the initial state, k the state after k
+ *               steps; at most the number of its steps
+ * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a strain or a distance beyond the
+ *               settings, a NaN, or more possible contacts than min(m(m-1)/2, 256 m) for m surface voxels. Such a
+ *               body stops; the others do not notice.
  *
  * The results of a body depend on nothing else in the batch, nor on which samples and tracks are asked for.
  */

@@ -1,10 +1,14 @@
-/* Self collision: which voxels may touch, and how they repel each other (section 10). */
+/* Self collision: which voxels may touch (section 10). */
 #include <stdlib.h>
 
 #include "internal.h"
 
-static const double REACH = 0.75;             /* a voxel's envelope is this many of its sizes in radius */
 static const int64_t CONTACTS_PER_VOXEL = 256;
+
+static int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
 
 static bool on_surface(const int32_t bonded[6])
 {
@@ -102,12 +106,11 @@ enum vox_status contacts_create(struct body *body)
     struct contacts *contacts = &body->contacts;
     const int64_t n_voxels = body->census.n_voxels, n_skin = count_surface(body);
     const int64_t near_each = most_near(hops_left_out(&body->model->settings));
-    const int64_t pairs = n_skin * (n_skin - 1) / 2, most = CONTACTS_PER_VOXEL * n_skin;
     contacts->longest = longest_axis(&body->model->settings);
     contacts->n_skin = n_skin;
-    contacts->capacity = pairs < most ? pairs : most;
+    contacts->capacity = least(n_skin * (n_skin - 1) / 2, CONTACTS_PER_VOXEL * n_skin);
     contacts->skin = malloc((size_t)(n_skin + 1) * sizeof *contacts->skin);
-    contacts->near = malloc((size_t)(n_skin * (near_each < n_voxels ? near_each : n_voxels) + 1) * sizeof *contacts->near);
+    contacts->near = malloc((size_t)(n_skin * least(near_each, n_voxels) + 1) * sizeof *contacts->near);
     contacts->stamp = malloc((size_t)n_voxels * sizeof *contacts->stamp);
     contacts->list = malloc((size_t)(contacts->capacity + 1) * sizeof *contacts->list);
     if (!contacts->skin || !contacts->near || !contacts->stamp || !contacts->list) return VOX_NO_MEMORY;
@@ -136,7 +139,7 @@ static void sort_skin(struct body *body)
     }
 }
 
-static double largest_size(const struct body *body)
+static double largest_current_size(const struct body *body)
 {
     double largest = 0.0;
     for (int64_t i = 0; i < body->contacts.n_skin; i++)
@@ -144,8 +147,22 @@ static double largest_size(const struct body *body)
     return largest;
 }
 
-/* Whether two voxels are close enough to be listed. The reach is that of the first; voxels exactly at it are out. */
-static bool close_enough(const struct voxel *first, double distance, const struct vox_settings *s)
+/* How far the fastest voxel may move before the list is made anew, m. */
+static double leeway(const struct vox_settings *s)
+{
+    return (s->collision_horizon - 1.0) / 2.0 * s->voxel_size;
+}
+
+/* Distance beyond which no pair is listed. A complete list has all that can touch before the next one is made. */
+static double list_reach(const struct body *body)
+{
+    const struct vox_settings *s = &body->model->settings;
+    if (s->complete_contacts) return s->collision_envelope * body->model->largest_size + 2.0 * leeway(s);
+    return s->collision_horizon * largest_current_size(body);
+}
+
+/* Whether the original engine lists two voxels: its reach is that of the first; voxels exactly at it are out. */
+static bool engine_lists(const struct voxel *first, double distance, const struct vox_settings *s)
 {
     const double most = s->collision_list_factor * s->collision_horizon * s->voxel_size;
     return distance < s->collision_horizon * first->size && distance < most;
@@ -155,12 +172,14 @@ static bool close_enough(const struct voxel *first, double distance, const struc
 static bool list_contact(struct body *body, int32_t one, int32_t other, double distance)
 {
     struct contacts *contacts = &body->contacts;
+    const struct vox_settings *s = &body->model->settings;
     const int32_t first = one < other ? one : other, second = one < other ? other : one;
     const struct voxel *a = &body->voxels[first], *b = &body->voxels[second];
-    if ((a->clamped && b->clamped) || !close_enough(a, distance, &body->model->settings)) return true;
+    if (a->fixed == VOX_FIX_ALL && b->fixed == VOX_FIX_ALL) return true;
+    if (!s->complete_contacts && !engine_lists(a, distance, s)) return true;
     if (contacts->n == contacts->capacity) return false;
-    const double stiffness = coupling_of(body->model, a->substance, b->substance)->stretch;
-    contacts->list[contacts->n++] = (struct contact){first, second, stiffness};
+    const struct coupling *coupling = coupling_of(body->model, a->substance, b->substance);
+    contacts->list[contacts->n++] = (struct contact){first, second, coupling};
     return true;
 }
 
@@ -168,7 +187,7 @@ static bool list_contact(struct body *body, int32_t one, int32_t other, double d
 static bool list_contacts(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
-    const double reach = body->model->settings.collision_horizon * largest_size(body);
+    const double reach = list_reach(body);
     int32_t *stamp = contacts->stamp;
     contacts->n = 0;
     sort_skin(body);
@@ -195,19 +214,4 @@ bool contacts_refresh(struct body *body, bool first_step)
     if (!first_step && contacts->travelled <= (settings->collision_horizon - 1.0) / 2.0) return true;
     contacts->travelled = 0.0;
     return list_contacts(body);
-}
-
-void contacts_apply(struct body *body)
-{
-    for (int64_t i = 0; i < body->contacts.n; i++) {
-        const struct contact *contact = &body->contacts.list[i];
-        struct voxel *first = &body->voxels[contact->first], *second = &body->voxels[contact->second];
-        const struct vec apart = vec_sub(second->position, first->position);
-        const double distance2 = vec_dot(apart, apart), reach = REACH * (first->size + second->size);
-        if (!(distance2 < reach * reach && distance2 > 0.0)) continue;
-        const double distance = sqrt(distance2);
-        const struct vec push = vec_scale(contact->stiffness * (reach - distance) / distance, apart);
-        first->force = vec_sub(first->force, push);
-        second->force = vec_add(second->force, push);
-    }
 }

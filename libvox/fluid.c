@@ -1,0 +1,50 @@
+/* Drag of a fluid on the outer surface (section 7). */
+#include "internal.h"
+
+static struct vec corner_of(const struct voxel *voxel, int corner)
+{
+    const double half = 0.5 * voxel->size;
+    const struct vec local = {corner & 1 ? half : -half, corner & 2 ? half : -half, corner & 4 ? half : -half};
+    return vec_add(voxel->position, quat_rotate(voxel->orientation, local));
+}
+
+/* Each corner of the surface is where the voxels that meet there have theirs, on average. */
+static void place_corners(struct body *body)
+{
+    struct surface *surface = &body->surface;
+    for (int64_t i = 0; i < surface->n_corners; i++) surface->corners[i] = (struct vec){0.0, 0.0, 0.0};
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        for (int corner = 0; corner < 8; corner++) {
+            const int32_t at = surface->corners_of[i][corner];
+            const struct vec own = vec_scale(surface->share[at], corner_of(&body->voxels[i], corner));
+            surface->corners[at] = vec_add(surface->corners[at], own);
+        }
+    }
+}
+
+/* Force on a triangle that moves with a velocity: none on its lee. */
+static struct vec triangle_drag(double coefficient, struct vec a, struct vec b, struct vec c, struct vec velocity)
+{
+    const struct vec doubled = vec_cross(vec_sub(b, a), vec_sub(c, a));
+    const double twice_area = sqrt(vec_dot(doubled, doubled));
+    const double against = vec_dot(velocity, doubled);
+    if (!(against > 0.0 && twice_area > 0.0)) return (struct vec){0.0, 0.0, 0.0};
+    const double speed = against / twice_area;
+    return vec_scale(-0.5 * coefficient * speed * speed, doubled);
+}
+
+void fluid_apply(struct body *body)
+{
+    const double coefficient = body->model->settings.fluid_drag;
+    const struct vec *corners = body->surface.corners;
+    place_corners(body);
+    for (int64_t i = 0; i < body->surface.n_facets; i++) {
+        const struct facet *facet = &body->surface.facets[i];
+        struct voxel *voxel = &body->voxels[facet->voxel];
+        const struct vec a = corners[facet->corners[0]], b = corners[facet->corners[1]];
+        const struct vec c = corners[facet->corners[2]], d = corners[facet->corners[3]];
+        const struct vec velocity = velocity_of(voxel);
+        voxel->force = vec_add(voxel->force, triangle_drag(coefficient, a, b, c, velocity));
+        voxel->force = vec_add(voxel->force, triangle_drag(coefficient, a, c, d, velocity));
+    }
+}

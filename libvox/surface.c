@@ -1,0 +1,153 @@
+/* The outer surface of a body, for the fluid around it (section 7): faces that the outside reaches, and the corners at
+ * which voxels that are joined face to face meet. */
+#include <stdlib.h>
+
+#include "internal.h"
+
+/* ---- corners ---------------------------------------------------------------------------------------------- */
+
+/* The eight cells around a lattice point as bits, the cell (x, y, z), each 0 or 1, at x + 2 y + 4 z: those that share a
+ * face with one of `cells`. */
+static unsigned beside(unsigned cells)
+{
+    return (cells & 0x55u) << 1 | (cells & 0xAAu) >> 1 | (cells & 0x33u) << 2 | (cells & 0xCCu) >> 2 |
+           (cells & 0x0Fu) << 4 | (cells & 0xF0u) >> 4;
+}
+
+/* Those of `cells` that are joined to one of them, face to face. */
+static unsigned joined_to(unsigned one, unsigned cells)
+{
+    unsigned joined = one, before;
+    do {
+        before = joined;
+        joined |= beside(joined) & cells;
+    } while (joined != before);
+    return joined;
+}
+
+/* Voxel in the cell (x, y, z), or -1; also beyond the canvas. */
+static int32_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z)
+{
+    const struct vox_settings *s = &body->model->settings;
+    if (x < 0 || y < 0 || z < 0 || x >= s->nx || y >= s->ny || z >= s->nz) return -1;
+    return body->voxel_in[x + s->nx * (y + s->ny * z)];
+}
+
+/* Makes one corner for each group of joined voxels around the lattice point (x, y, z). */
+static void meet_at(struct body *body, int64_t x, int64_t y, int64_t z)
+{
+    struct surface *surface = &body->surface;
+    int32_t voxels[8];
+    unsigned left = 0;
+    for (int i = 0; i < 8; i++) {
+        voxels[i] = voxel_at(body, x - 1 + (i & 1), y - 1 + (i >> 1 & 1), z - 1 + (i >> 2));
+        if (voxels[i] >= 0) left |= 1u << i;
+    }
+    while (left) {
+        const unsigned group = joined_to(left & (~left + 1u), left);
+        int n = 0;
+        for (int i = 0; i < 8; i++) {
+            if (!(group >> i & 1u)) continue;
+            surface->corners_of[voxels[i]][7 - i] = (int32_t)surface->n_corners;
+            n++;
+        }
+        surface->share[surface->n_corners++] = 1.0 / n;
+        left &= ~group;
+    }
+}
+
+static void join_corners(struct body *body)
+{
+    const struct vox_settings *s = &body->model->settings;
+    for (int64_t z = 0; z <= s->nz; z++)
+        for (int64_t y = 0; y <= s->ny; y++)
+            for (int64_t x = 0; x <= s->nx; x++) meet_at(body, x, y, z);
+}
+
+/* ---- faces ------------------------------------------------------------------------------------------------ */
+
+static bool at_border(const vox_model *model, int64_t cell)
+{
+    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
+        if (cell_beside(model, cell, axis, false) < 0 || cell_beside(model, cell, axis, true) < 0) return true;
+    return false;
+}
+
+/* Marks the empty cells that can be reached from beyond the canvas. `queue` has room for all cells. */
+static void flood(const struct body *body, bool *outside, int32_t *queue)
+{
+    const vox_model *model = body->model;
+    int64_t n = 0;
+    for (int64_t cell = 0; cell < model->cells; cell++) {
+        outside[cell] = body->voxel_in[cell] < 0 && at_border(model, cell);
+        if (outside[cell]) queue[n++] = (int32_t)cell;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        for (int side = 0; side < 6; side++) {
+            const int64_t next = cell_beside(model, queue[i], (enum axis)(side / 2), side % 2);
+            if (next < 0 || outside[next] || body->voxel_in[next] >= 0) continue;
+            outside[next] = true;
+            queue[n++] = (int32_t)next;
+        }
+    }
+}
+
+static struct facet facet_of(const struct body *body, int32_t voxel, enum axis axis, bool upwards)
+{
+    const int32_t *corners = body->surface.corners_of[voxel];
+    const int along = 1 << axis, first = 1 << (axis + 1) % 3, second = 1 << (axis + 2) % 3;
+    const int from = upwards ? along : 0;
+    if (upwards)
+        return (struct facet){
+            voxel, {corners[from], corners[from + first], corners[from + first + second], corners[from + second]}};
+    return (struct facet){
+        voxel, {corners[from], corners[from + second], corners[from + first + second], corners[from + first]}};
+}
+
+static void find_facets(struct body *body, const bool *outside)
+{
+    struct surface *surface = &body->surface;
+    for (int32_t voxel = 0; voxel < body->census.n_voxels; voxel++) {
+        for (int side = 0; side < 6; side++) {
+            const enum axis axis = (enum axis)(side / 2);
+            const int64_t next = cell_beside(body->model, body->voxels[voxel].cell, axis, side % 2);
+            if (next < 0 || outside[next]) surface->facets[surface->n_facets++] = facet_of(body, voxel, axis, side % 2);
+        }
+    }
+}
+
+static enum vox_status place_facets(struct body *body)
+{
+    const size_t cells = (size_t)body->model->cells;
+    bool *outside = malloc(cells * sizeof *outside);
+    int32_t *queue = malloc(cells * sizeof *queue);
+    const bool enough = outside && queue;
+    if (enough) {
+        flood(body, outside, queue);
+        find_facets(body, outside);
+    }
+    free(outside);
+    free(queue);
+    return enough ? VOX_OK : VOX_NO_MEMORY;
+}
+
+enum vox_status surface_create(struct body *body)
+{
+    struct surface *surface = &body->surface;
+    const size_t n = (size_t)body->census.n_voxels;
+    surface->corners_of = malloc(n * sizeof *surface->corners_of);
+    surface->share = malloc(8 * n * sizeof *surface->share);
+    surface->corners = malloc(8 * n * sizeof *surface->corners);
+    surface->facets = malloc(6 * n * sizeof *surface->facets);
+    if (!surface->corners_of || !surface->share || !surface->corners || !surface->facets) return VOX_NO_MEMORY;
+    join_corners(body);
+    return place_facets(body);
+}
+
+void surface_destroy(struct surface *surface)
+{
+    free(surface->corners_of);
+    free(surface->share);
+    free(surface->corners);
+    free(surface->facets);
+}
