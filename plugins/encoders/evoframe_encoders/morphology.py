@@ -32,7 +32,8 @@ class CppnMorphology:
 
     A voxel is present if the absolute value of the first output reaches *threshold*; then it is contractile
     if that of the second does, else passive. With *enclosure* the outermost layer of the canvas is passive
-    whatever the network says, so that the free end always exists and a body is never empty.
+    whatever the network says, so that the free end always exists and a body is never empty. A body without it
+    may be empty, or of several parts unless *connected*.
 
     Attributes:
         canvas: Number of voxels along x, y and z.
@@ -40,12 +41,15 @@ class CppnMorphology:
         threshold: What an output must reach, without unit (paper).
         normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; the paper's networks see
             the indices of voxels.
+        connected: Whether only the largest part of voxels that are joined face to face is kept; of equal ones
+            that which comes first along x, then y, then z.
     """
 
     canvas: Canvas = attrs.field(default=(20, 8, 8), validator=_possible_canvas)
     enclosure: bool = True
     threshold: float = attrs.field(default=0.5, validator=ge(0.0))
     normalized_coordinates: bool = False
+    connected: bool = False
 
     @property
     def inputs(self) -> int:
@@ -73,9 +77,21 @@ class CppnMorphology:
         drawn = (slice(1, -1),) * 3 if self.enclosure else (slice(None),) * 3
         points = voxel_points(self.canvas, self.normalized_coordinates)[drawn]
         body[drawn] = self._materials(network(points.reshape(-1, 3))).reshape(points.shape[:3])
+        if self.connected:
+            body = _largest_part(body)
         body.setflags(write=False)
         return design.with_role(MORPHOLOGY, body)
 
     def _materials(self, outputs: NDArray[np.float64]) -> NDArray[np.uint8]:
         present, contractile = (np.abs(outputs) >= self.threshold).T
         return np.where(present, np.where(contractile, CONTRACTILE, PASSIVE), EMPTY).astype(np.uint8)
+
+
+def _largest_part(body: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    from scipy import ndimage  # noqa: PLC0415 - nobody else shall wait for it
+
+    parts, n_parts = ndimage.label(body != EMPTY)  # face to face is its default
+    if n_parts < 2:
+        return body
+    largest = 1 + int(np.argmax(np.bincount(parts.ravel())[1:]))
+    return np.where(parts == largest, body, EMPTY).astype(np.uint8)

@@ -23,6 +23,10 @@ class TestContractOfAnOpenCanvas(EncoderContract):
     component = CppnMorphology(canvas=(5, 1, 3), enclosure=False, normalized_coordinates=True)
 
 
+class TestContractOfAConnectedBody(EncoderContract):
+    component = CppnMorphology(canvas=(4, 3, 3), enclosure=False, connected=True)
+
+
 def body_of(encoder: CppnMorphology, network: Any) -> Any:
     return encoder.decode(network, Design()).roles["morphology"]
 
@@ -78,6 +82,40 @@ def test_a_body_has_the_canvas_the_codes_and_the_enclosure(canvas: Any, seed: in
     interior = np.zeros(canvas, dtype=bool)
     interior[1:-1, 1:-1, 1:-1] = True
     assert (body[~interior] == 1).all()
+
+
+def parts_of(body: Any) -> list[set[tuple[int, ...]]]:
+    """Return the parts of a body, walking from voxel to voxel through their faces."""
+    left = {tuple(index) for index in np.argwhere(body).tolist()}
+    parts = []
+    while left:
+        walk = [min(left)]
+        part = set()
+        while walk:
+            voxel = walk.pop()
+            if voxel in left:
+                left.remove(voxel)
+                part.add(voxel)
+                steps = np.concatenate([np.eye(3, dtype=int), -np.eye(3, dtype=int)])
+                walk += [tuple(step) for step in (np.array(voxel) + steps).tolist()]
+        parts.append(part)
+    return parts
+
+
+def noise(seed: int) -> Any:
+    """Return what no network draws: bodies of many small parts."""
+    return lambda points: np.random.default_rng(seed).normal(size=(len(points), 2), scale=0.5)
+
+
+@given(CANVASES, SEEDS)
+def test_the_largest_part_is_kept_as_it_is(canvas: Any, seed: int) -> None:
+    drawing = noise(seed)
+    whole = body_of(CppnMorphology(canvas, enclosure=False), drawing)
+    kept = body_of(CppnMorphology(canvas, enclosure=False, connected=True), drawing)
+    largest = max(parts_of(whole), key=len, default=set())  # the first of equal ones
+    assert {tuple(index) for index in np.argwhere(kept).tolist()} == largest
+    assert kept[kept > 0].tolist() == whole[kept > 0].tolist()
+    assert not kept.flags.writeable
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,107 @@
+"""Does the bar of the preset ``bending`` really bend, and where does its drive lie?
+
+Measures the first bending mode of the bar (solid, and only its enclosure) from its swing under a small
+sudden weight, and how far a bimorph of the preset bends: its upper half contracts against its lower. Then the
+same with other drive frequencies and dampings, which is what those of the preset were chosen by.
+
+    python -m benchmarks.bending
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+import evoframe
+from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, PASSIVE, Design, Record
+
+FREQUENCIES = (1.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0, 12.0)  # Hz
+DAMPINGS = (0.0, 0.001, 0.003, 0.01)
+
+
+def bar(canvas: Sequence[int], inside: int) -> NDArray[np.uint8]:
+    """Return a passive enclosure around an *inside* of one material."""
+    body = np.full(canvas, PASSIVE, np.uint8)
+    body[1:-1, 1:-1, 1:-1] = inside
+    return body
+
+
+def bimorph(canvas: Sequence[int]) -> Design:
+    """Return a bar whose upper half contracts when its lower half expands."""
+    offsets = np.zeros(canvas)
+    offsets[:, :, : canvas[2] // 2] = math.pi
+    return Design({MORPHOLOGY: bar(canvas, CONTRACTILE), CONTROLLER: offsets})
+
+
+def first_mode(vox: Any, body: NDArray[np.uint8]) -> float:
+    """Return the frequency, Hz, at which a bar swings about where a small weight would hold it."""
+    wave_speed = math.sqrt(vox.youngs_modulus / vox.density)
+    slender = 0.1615 * body.shape[2] / (body.shape[0] - 0.5) ** 2 * wave_speed / vox.voxel_size
+    swinging = attrs.evolve(
+        vox,
+        gravity=-1e-6 * wave_speed**2 / vox.voxel_size,
+        expansion_coefficient=0.0,
+        slow_damping=0.0,
+        self_collision=False,
+        duration=3.0 / slender,
+    )
+    design = Design({MORPHOLOGY: body, CONTROLLER: np.zeros(body.shape)})
+    [outcome] = swinging.simulate([design], Record(("face",)))
+    height = outcome.tracks["face"][:, 2]
+    low = np.flatnonzero((height[1:-1] < height[:-2]) & (height[1:-1] < height[2:])) + 1
+    deep = low[height[low] < height.mean()]
+    return float(1.0 / (outcome.times[deep[1]] - outcome.times[deep[0]]))
+
+
+def bending(vox: Any, objective: Any, design: Design) -> tuple[float, float]:
+    """Return the displacement in voxel edges, and the CPU time of the simulation, s."""
+    started = time.process_time()
+    [outcome] = vox.simulate([design], objective.record)
+    cpu = time.process_time() - started
+    return objective.score(outcome) / vox.voxel_size, cpu
+
+
+def driven_at(vox: Any, objective: Any, frequency: float) -> tuple[Any, Any]:
+    """Return simulator and objective for another drive, with as many periods of it."""
+    slower = vox.frequency / frequency
+    simulator = attrs.evolve(vox, frequency=frequency, ramp=vox.ramp * slower, duration=vox.duration * slower)
+    return simulator, attrs.evolve(objective, every=objective.every * slower, after=objective.after * slower)
+
+
+def say(line: str) -> None:
+    """Write a line at once: the next measurement may take a while."""
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
+
+
+def main() -> None:
+    """Print the tables."""
+    config = evoframe.load_config("bending")
+    vox: Any = config.simulator.component
+    objective: Any = config.objective.component
+    canvas = config.populations[MORPHOLOGY].encoder.component.canvas  # type: ignore[attr-defined]  # of cppn-morphology
+    for name, inside in (("solid", PASSIVE), ("enclosure only", 0)):
+        mode = first_mode(vox, bar(canvas, inside))
+        say(f"first bending mode, {name}: {mode:.2f} Hz; the drive is at {vox.frequency / mode:.2f} of it")
+    displacement, cpu = bending(vox, objective, bimorph(canvas))
+    say(f"bimorph: {displacement:.3f} voxel edges; {cpu:.2f} s of CPU")
+    for variant in vox.variants(bimorph(canvas), objective.record):
+        [outcome] = variant.simulator.simulate([variant.design], variant.record)
+        say(f"  {variant.name}: {objective.score(outcome) / vox.voxel_size:.3f}")
+    for frequency in FREQUENCIES:
+        displacement, _ = bending(*driven_at(vox, objective, frequency), bimorph(canvas))
+        say(f"drive {frequency:g} Hz: {displacement:.3f} voxel edges")
+    for damping in DAMPINGS:
+        displacement, _ = bending(attrs.evolve(vox, slow_damping=damping), objective, bimorph(canvas))
+        say(f"slow damping {damping:g}: {displacement:.3f} voxel edges")
+
+
+if __name__ == "__main__":
+    main()
