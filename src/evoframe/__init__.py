@@ -1,7 +1,8 @@
 """Cooperative coevolution of soft robots: a small core, and plugins for everything else.
 
 This module is the public API: what a plugin author implements (:data:`hookimpl`, the protocols, the values,
-the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :class:`Coevolution`).
+the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :func:`verify`,
+:class:`Coevolution`).
 """
 
 from evoframe._version import __version__
@@ -16,7 +17,7 @@ from evoframe.errors import (
     PluginWarning,
     RunError,
 )
-from evoframe.evaluation import Evaluator
+from evoframe.evaluation import Evaluator, Score
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer
 from evoframe.loading import Champion, Run, load_run
@@ -39,6 +40,7 @@ from evoframe.run import assemble, run
 from evoframe.values import (
     BestPair,
     Design,
+    Export,
     Member,
     Outcome,
     Pair,
@@ -46,8 +48,11 @@ from evoframe.values import (
     Record,
     Scores,
     Turn,
+    Variant,
     Workload,
 )
+from evoframe.verification import Finding, Verification
+from evoframe.verify import verify
 from evoframe.voxels import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE
 
 __all__ = [
@@ -71,6 +76,8 @@ __all__ = [
     "EvolverRun",
     "Executor",
     "ExecutorRun",
+    "Export",
+    "Finding",
     "InputError",
     "Layer",
     "Member",
@@ -89,9 +96,12 @@ __all__ = [
     "RunConfig",
     "RunError",
     "RunSettings",
+    "Score",
     "Scores",
     "Simulator",
     "Turn",
+    "Variant",
+    "Verification",
     "Workload",
     "__version__",
     "assemble",
@@ -101,4 +111,5 @@ __all__ = [
     "load_run",
     "run",
     "suggestion",
+    "verify",
 ]

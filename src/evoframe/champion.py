@@ -20,6 +20,7 @@ __all__ = [
     "champion_from_json",
     "design_from_json",
     "design_to_json",
+    "parsed_json",
     "read_champion",
 ]
 
@@ -78,7 +79,7 @@ def champion_from_json(text: str) -> tuple[Design, dict[str, Any], float]:
     Raises:
         ValueError: The text is not JSON, or no champion; says why.
     """
-    document = _parsed(text)
+    document = parsed_json(text)
     if not isinstance(document, dict) or not document.keys() >= _CHAMPION_KEYS:
         raise ValueError("this JSON is no champion of evoframe; expected a run's champion.json")
     if document["format"] is True or document["format"] != FORMAT:
@@ -110,7 +111,12 @@ def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
         raise InputError(f"{path}: {error}") from error
 
 
-def _parsed(text: str) -> Any:
+def parsed_json(text: str) -> Any:
+    """Return what a file from anyone holds.
+
+    Raises:
+        ValueError: It is not valid JSON.
+    """
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:

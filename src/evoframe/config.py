@@ -143,6 +143,10 @@ class RunConfig:
             "plugins": unstructure(self.plugins),
         }
 
+    def simulation(self) -> Tree:
+        """Return the tables that say how a design is simulated and scored."""
+        return {key: _table(getattr(self, key)) for key in ("simulator", "objective")}
+
     def to_toml(self) -> str:
         """Return the configuration as the text of a TOML file that means the same."""
         return tomli_w.dumps(self.tables())

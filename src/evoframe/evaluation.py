@@ -10,9 +10,9 @@ import attrs
 
 from evoframe.errors import RunError
 from evoframe.protocols import ExecutorRun, Objective, Simulator
-from evoframe.values import Design
+from evoframe.values import Design, Record
 
-__all__ = ["Evaluator", "Score"]
+__all__ = ["Evaluator", "Score", "simulated"]
 
 _BATCHES_PER_WORKER = 4  # small enough to balance bodies of different cost
 
@@ -70,15 +70,26 @@ class Evaluator:
         return [designs[start : start + size] for start in range(0, len(designs), size)]
 
     def _simulate(self, designs: list[Design]) -> list[Score]:
-        outcomes = self.simulator.simulate(designs, self.objective.record)
-        if len(outcomes) != len(designs):
-            raise RunError(f"the simulator returned {len(outcomes)} outcomes for {len(designs)} designs")
-        return [
-            Score(None, outcome.diverged_at)
-            if outcome.diverged_at is not None
-            else Score(_finite(self.objective.score(outcome)))
-            for outcome in outcomes
-        ]
+        return simulated(self.simulator, designs, self.objective.record, self.objective)
+
+
+def simulated(
+    simulator: Simulator, designs: Sequence[Design], record: Record, objective: Objective
+) -> list[Score]:
+    """Simulate *designs* and return what *objective* gives for each, without looking for repeats.
+
+    Raises:
+        RunError: A design has no outcome, or a score that is not finite though it did not diverge.
+    """
+    outcomes = simulator.simulate(designs, record)
+    if len(outcomes) != len(designs):
+        raise RunError(f"the simulator returned {len(outcomes)} outcomes for {len(designs)} designs")
+    return [
+        Score(None, outcome.diverged_at)
+        if outcome.diverged_at is not None
+        else Score(_finite(objective.score(outcome)))
+        for outcome in outcomes
+    ]
 
 
 def _finite(score: float) -> float:

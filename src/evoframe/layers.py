@@ -21,6 +21,7 @@ __all__ = [
     "Layers",
     "Tree",
     "layer_of",
+    "layers_of",
     "preset_names",
     "read_layers",
 ]
@@ -114,6 +115,12 @@ def layer_of(origin: str, key: str, value: Any) -> Layer:
     for part in reversed(key.split(".")):
         tree = {part: tree}
     return Layer(origin, tree)
+
+
+def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
+    """Return a layer for each dotted key of *settings*, as Python code gives them; ``None`` sets nothing."""
+    given = {key: value for key, value in settings.items() if value is not None}
+    return [layer_of(f"{key}={value!r}", key, value) for key, value in given.items()]
 
 
 def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:

@@ -11,9 +11,10 @@ from typing import Any
 
 import attrs
 
-from evoframe.champion import FORMAT, champion_from_json
+from evoframe.champion import FORMAT, champion_from_json, parsed_json
 from evoframe.errors import InputError
 from evoframe.values import Design
+from evoframe.verification import VERIFICATION_FILE, Verification, verification_from_json
 
 __all__ = ["Champion", "Run", "load_run"]
 
@@ -87,6 +88,30 @@ class Run:
         except ValueError as error:
             raise InputError(f"{path}: best_pairs: {error}") from error
         return Champion(score, design, simulation)
+
+    @property
+    def verification(self) -> Verification | None:
+        """What became of the champion with one thing changed at a time; ``None`` if nobody has looked.
+
+        Raises:
+            InputError: The file is damaged, or is about another champion.
+        """
+        path = self.directory / VERIFICATION_FILE
+        try:
+            verification = verification_from_json(parsed_json(path.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        except ValueError as error:
+            raise InputError(f"{path}: {error}; {self._verify_again}") from error
+        if verification.score != self.champion.score:
+            raise InputError(f"{path}: is about another champion; {self._verify_again}")
+        return verification
+
+    @property
+    def _verify_again(self) -> str:
+        return f"to make it anew: evoframe verify {self.directory}"
 
     def table(self, name: str) -> list[dict[str, Any]]:
         """Return the rows of a table of the database, in the order of their keys.

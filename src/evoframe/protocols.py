@@ -170,7 +170,15 @@ class Simulator(Protocol):
     once; recording more changes nothing; equal keys mean equal outcomes; a diverged simulation says so and at
     which step.
 
-    A simulator may also offer ``read(path) -> [(label, design), ...]`` for the files that it knows.
+    It may offer more, each on its own:
+
+    - ``read(path) -> [(label, design), ...]``: the designs of a file that it knows.
+    - ``settings_of(path) -> Mapping[str, Any] | None``: the options that a file brings with it, as TOML
+      values, or ``None``. It gives every option that matters, so that nothing of a preset lingers.
+    - ``formats: tuple[str, ...]`` and ``export(design, format) -> Export``: the files of other programs that
+      it writes. A format is named by the ending of its files; the same design gives the same bytes.
+    - ``variants(design, record) -> Sequence[Variant]``: what ``evoframe verify`` simulates beside the
+      unchanged design. The same arguments give the same variants.
     """
 
     @property
@@ -179,13 +187,13 @@ class Simulator(Protocol):
 
     @property
     def tracks(self) -> tuple[str, ...]:
-        """Names of the points that it can follow."""
+        """Names of the points that it can follow; it may accept, and document, tracks of other shapes."""
 
     def check(self, record: Record) -> None:
         """Refuse a *record* that cannot be delivered.
 
         Raises:
-            ConfigurationError: An unknown track, or a sample after the end.
+            ConfigurationError: An unknown track, a sample after the end, or an end before ``record.until``.
         """
 
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:

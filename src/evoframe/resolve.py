@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -14,11 +14,12 @@ from attrs import validators
 from evoframe.config import Chosen, PluginSettings, PopulationConfig, RunConfig, RunSettings
 from evoframe.discovery import discover
 from evoframe.errors import ConfigurationError, PluginError
-from evoframe.layers import COMPONENTS, POPULATION_COMPONENTS, Layer, Layers, Tree, read_layers
+from evoframe.layers import COMPONENTS, POPULATION_COMPONENTS, Layer, Layers, Tree, layer_of, read_layers
 from evoframe.plugins import KINDS, Offer, Plugins, suggestion
+from evoframe.protocols import Simulator
 from evoframe.structuring import Fault, StructureError, found, structure
 
-__all__ = ["load_config"]
+__all__ = ["load_config", "named_simulator"]
 
 C = TypeVar("C")
 _ROLE = re.compile(r"[a-z][a-z0-9_-]*")
@@ -54,6 +55,37 @@ def load_config(
     if config is None:
         raise ConfigurationError(_report(reading.faults, layers))
     return config
+
+
+def named_simulator(
+    source: str | Path, overrides: Sequence[str | Layer], plugins: Plugins
+) -> Chosen[Simulator] | None:
+    """Return the simulator that a configuration names, to be asked which settings a file brings with it.
+
+    Its options are those of the preset as far as they make a simulator: what is set on top of the preset may
+    only fit together with the settings of the file.
+
+    Args:
+        source: Name of a preset, or path of a TOML file.
+        overrides: As for :func:`load_config`.
+        plugins: The plugins to choose from.
+
+    Returns:
+        The simulator; ``None`` if there are faults, which :func:`load_config` reports.
+    """
+    table = read_layers(source, overrides).merged().get("simulator")
+    if not isinstance(table, Mapping) or "name" not in table:
+        return None
+    alone = layer_of("", "simulator", {"name": table["name"]})
+    for given in ([alone], overrides):
+        tree = read_layers(source, given).merged()
+        reading = _Reading(tree)
+        settings = reading.section("plugins", PluginSettings) or PluginSettings()
+        usable = plugins.without(settings.block)
+        chosen = reading.chosen(usable, "simulator", tree["simulator"], ("simulator",))
+        if chosen is not None:
+            return chosen
+    return None
 
 
 def _line(fault: Fault, layers: Layers) -> str:
@@ -93,7 +125,7 @@ class _Reading:
         """Return the configuration, or ``None`` if there are faults."""
         self._refuse_unknown_keys()
         run = self.section("run", RunSettings)
-        choose = functools.partial(self._chosen, plugins)
+        choose = functools.partial(self.chosen, plugins)
         populations = self._populations(choose)
         chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
         self.faults += _Checks(populations, chosen).faults()
@@ -108,22 +140,8 @@ class _Reading:
             **cast("dict[str, Any]", chosen),
         )
 
-    def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
-        try:
-            return structure(value, class_, path)
-        except StructureError as error:
-            self.faults += error.faults
-            return None
-
-    def _refuse_unknown_keys(self) -> None:
-        known = ["run", "populations", *COMPONENTS, "plugins"]
-        for key in self.tree:
-            if key == "extends":
-                self.faults.append(Fault((key,), "can only be set in a file"))
-            elif key not in known:
-                self.faults.append(Fault((key,), f"unknown key{suggestion(key, known, 'keys')}"))
-
-    def _chosen(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Chosen[Any] | None:
+    def chosen(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Chosen[Any] | None:
+        """Return the component that a table names, or ``None`` if there are faults."""
         if not isinstance(table, Mapping) or not isinstance(table.get("name"), str):
             message = f"expected the name of one of {', '.join(plugins.names(kind))}, or a table with name"
             self.faults.append(Fault(path, f"{message}; found {found(table)}"))
@@ -140,6 +158,21 @@ class _Reading:
         breaches = [Fault(path, message) for message in _breaches(offer, component)]
         self.faults += breaches
         return None if breaches else Chosen(table["name"], component, offer.source)
+
+    def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
+        try:
+            return structure(value, class_, path)
+        except StructureError as error:
+            self.faults += error.faults
+            return None
+
+    def _refuse_unknown_keys(self) -> None:
+        known = ["run", "populations", *COMPONENTS, "plugins"]
+        for key in self.tree:
+            if key == "extends":
+                self.faults.append(Fault((key,), "can only be set in a file"))
+            elif key not in known:
+                self.faults.append(Fault((key,), f"unknown key{suggestion(key, known, 'keys')}"))
 
     def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
         tables = self.tree.get("populations")

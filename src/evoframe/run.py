@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import itertools
 import logging
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,21 +18,23 @@ import tomli_w
 from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
-from evoframe.errors import InputError
+from evoframe.errors import ConfigurationError, EvoframeError, InputError, RunError
 from evoframe.evaluation import Evaluator
-from evoframe.layers import Tree, layer_of
+from evoframe.exporting import exports
+from evoframe.layers import layers_of
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.population import Population
 from evoframe.randomness import stream
 from evoframe.resolve import load_config
-from evoframe.store import Store
-from evoframe.values import Turn
+from evoframe.store import Store, write_json
+from evoframe.values import Design, Turn
+from evoframe.verification import VERIFICATION_FILE, Verification, can_verify, verify_design
 
 _log = logging.getLogger(__name__)
 
-__all__ = ["Execution", "assemble", "evaluator_of", "prepare", "run"]
+__all__ = ["Execution", "assemble", "evaluator_of", "keep_verification", "prepare", "run", "verified"]
 
 
 def run(
@@ -44,7 +47,7 @@ def run(
     plugins: Plugins | None = None,
     **settings: Any,
 ) -> Run:
-    """Run a configuration to its end, as the command ``evoframe run`` does.
+    """Run a configuration to its end and verify its champion, as the command ``evoframe run`` does.
 
     Args:
         config: Name of a preset, path of a TOML file, or a configuration from :func:`load_config`.
@@ -61,19 +64,17 @@ def run(
     Raises:
         ConfigurationError: The configuration cannot be accepted; nothing was run or written.
         InputError: The directory is not empty, or cannot be written.
-        RunError: The run cannot go on; what was saved stays.
+        RunError: The run cannot go on, or its champion cannot be verified; what was saved stays.
     """
     if isinstance(config, RunConfig):
         if settings or any(given is not None for given in (seed, workers, plugins)):
             raise TypeError("a configuration is complete; give settings and plugins to load_config")
     else:
-        named = {**settings, "run.seed": seed, "executor.workers": workers}
-        overrides = [
-            layer_of(f"{key}={value!r}", key, value) for key, value in named.items() if value is not None
-        ]
+        overrides = layers_of({**settings, "run.seed": seed, "executor.workers": workers})
         config = load_config(config, overrides=overrides, plugins=plugins)
     execution = prepare(config, None if out is None else Path(out))
     execution.play(Observers(config.discovered.manager))
+    execution.verify()
     return load_run(execution.directory)
 
 
@@ -107,6 +108,41 @@ def evaluator_of(config: RunConfig) -> Evaluator:
     return Evaluator(
         config.simulator.component, config.objective.component, config.executor.component.start()
     )
+
+
+def verified(config: RunConfig, designs: Sequence[Design], score: float | None = None) -> list[Verification]:
+    """Return what becomes of designs in all variants of a configuration's simulator.
+
+    Args:
+        config: How they are simulated and scored, and by how many workers.
+        designs: What is verified, each on its own.
+        score: What a champion scored in its run.
+
+    Raises:
+        ConfigurationError: The simulator offers no variants.
+    """
+    simulator = config.simulator.component
+    if not can_verify(simulator):
+        raise ConfigurationError(
+            f"the simulator '{config.simulator.name}' offers no variants of a simulation, so there is "
+            "nothing that a score could be compared with"
+        )
+    workers = config.executor.component.start()
+    try:
+        return [
+            verify_design(simulator, config.objective.component, design, workers, score) for design in designs
+        ]
+    finally:
+        workers.close()
+
+
+def keep_verification(directory: Path, verification: Verification) -> None:
+    """Write the verification of a run's champion beside it, so that :attr:`Run.verification` finds it.
+
+    Raises:
+        RunError: It cannot be written.
+    """
+    write_json(directory / VERIFICATION_FILE, verification.to_json())
 
 
 @attrs.frozen
@@ -148,6 +184,27 @@ class Execution:
                 observers.tell("evoframe_run_finished", directory=self.directory, completed=completed)
         return completed
 
+    def verify(self) -> Verification | None:
+        """Verify the champion of the completed run, and keep the result beside it.
+
+        Returns:
+            The verification; ``None`` if the simulator offers no variants.
+
+        Raises:
+            RunError: It cannot be done. The run itself is complete and saved.
+        """
+        if not can_verify(self.config.simulator.component):
+            return None
+        try:
+            champion = load_run(self.directory).champion
+            [verification] = verified(self.config, [champion.design], champion.score)
+            keep_verification(self.directory, verification)
+        except Exception as error:
+            cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
+            complete = f"{self.directory}: the run is complete and saved"
+            raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
+        return verification
+
 
 def prepare(config: RunConfig, out: Path | None = None) -> Execution:
     """Start the components of a configuration, and make the directory of its run.
@@ -162,10 +219,11 @@ def prepare(config: RunConfig, out: Path | None = None) -> Execution:
         InputError: The directory is not empty, or cannot be made.
     """
     coevolution = assemble(config)
-    roles, tables = list(config.populations), simulation_tables(config)
+    export = functools.partial(exports, config.simulator.component)
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
-        return Execution(config, directory, coevolution, Store(directory, roles, tables))
+        store = Store(directory, list(config.populations), config.simulation(), export)
+        return Execution(config, directory, coevolution, store)
     except BaseException:
         coevolution.close()
         raise
@@ -195,12 +253,6 @@ def _given_directory(directory: Path) -> Path:
     if occupied:
         raise InputError(f"{directory}: is not empty; choose another directory with --out")
     return directory
-
-
-def simulation_tables(config: RunConfig) -> Tree:
-    """Return the tables that say how a design is simulated and scored."""
-    tables = config.tables()
-    return {key: tables[key] for key in ("simulator", "objective")}
 
 
 def _play(coevolution: Coevolution, store: Store, observers: Observers, stop: Callable[[], bool]) -> bool:

@@ -8,15 +8,15 @@ import logging
 import os
 import sqlite3
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from evoframe.champion import FORMAT, champion_document
 from evoframe.errors import InputError, RunError
-from evoframe.values import Pair, PopulationReport, Turn
+from evoframe.values import Design, Pair, PopulationReport, Turn
 
-__all__ = ["Store", "write_json"]
+__all__ = ["Store", "write_atomically", "write_json"]
 
 _log = logging.getLogger(__name__)
 
@@ -53,15 +53,23 @@ class Store:
         directory: The run's directory.
         roles: Names of the populations, in order.
         simulation: What is needed to simulate the champion again, for its file.
+        exports: Gives the champion as files of other programs: ending -> bytes, ``None`` for no file.
 
     Raises:
         InputError: The directory belongs to another run, or cannot be written.
         RunError: Raised by all methods when the disk does not take what they write.
     """
 
-    def __init__(self, directory: Path, roles: list[str], simulation: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        directory: Path,
+        roles: list[str],
+        simulation: Mapping[str, Any],
+        exports: Callable[[Design], Mapping[str, bytes | None]] = lambda _: {},
+    ) -> None:
         self.directory = directory
         self.simulation = simulation
+        self.exports = exports
         self._database = _new_database(directory / "run.db")
         with self._transaction():
             columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
@@ -72,10 +80,10 @@ class Store:
 
     def save_config(self, text: str) -> None:
         """Write the resolved configuration."""
-        _write_atomically(self.directory / "config.toml", text)
+        write_atomically(self.directory / "config.toml", text.encode())
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
-        """Save a turn and the state after it, both or neither; then the champion, if it is a new one.
+        """Save a turn and the state after it, both or neither; then the champion's files, if it is a new one.
 
         Args:
             turn: The turn.
@@ -94,9 +102,19 @@ class Store:
             for part, values in state.items():
                 row = (part, turn.index, _json(values))
                 self._database.execute("INSERT OR REPLACE INTO state VALUES (?, ?, ?)", row)
-        if champion:
-            write_json(self.directory / "champion.json", champion)
+        if champion and turn.best_pair:
+            self._save_champion(champion, turn.best_pair.design)
         self._synchronise()
+
+    def _save_champion(self, document: Mapping[str, Any], design: Design) -> None:
+        """Write the champion's files; none of an earlier one stays."""
+        write_json(self.directory / "champion.json", document)
+        for ending, data in self.exports(design).items():
+            path = self.directory / f"champion.{ending}"
+            if data is None:
+                path.unlink(missing_ok=True)
+            else:
+                write_atomically(path, data)
 
     def finish(self, result: Mapping[str, Any]) -> None:
         """Note the final figures."""
@@ -145,8 +163,26 @@ class Store:
 
 
 def write_json(path: Path, document: Any) -> None:
-    """Write JSON so that a reader sees the old file or the new one, never a part."""
-    _write_atomically(path, _json(document) + "\n")
+    """Write JSON as :func:`write_atomically` does, always in the same way."""
+    write_atomically(path, f"{_json(document)}\n".encode())
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write a file so that a reader sees the old one or the new one, never a part.
+
+    Raises:
+        RunError: It cannot be written.
+    """
+    temporary = path.with_name(f".{path.name}.new")
+    try:
+        with temporary.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def _json(value: Any) -> str:
@@ -168,19 +204,6 @@ def _new_database(path: Path) -> sqlite3.Connection:
     except sqlite3.Error as error:
         raise InputError(f"{path}: cannot be written: {error}") from error
     return database
-
-
-def _write_atomically(path: Path, text: str) -> None:
-    temporary = path.with_name(f".{path.name}.new")
-    try:
-        with temporary.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def _turn_row(turn: int, report: PopulationReport) -> tuple[Any, ...]:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    from evoframe.protocols import Simulator
+
 __all__ = [
     "BestPair",
     "Design",
+    "Export",
     "Member",
     "Outcome",
     "Pair",
@@ -19,6 +23,7 @@ __all__ = [
     "Record",
     "Scores",
     "Turn",
+    "Variant",
     "Workload",
 ]
 
@@ -62,16 +67,20 @@ class Record:
     after the first step that ends at least *every* seconds after the sample before it.
 
     Attributes:
-        tracks: Names of the points to follow; each gives ``float64[samples, 3]`` in metres.
+        tracks: Names of what to follow. Each of the points in a simulator's ``tracks`` gives
+            ``float64[samples, 3]`` in metres; other tracks that it accepts have the shapes that it documents.
         every: Seconds between samples; 0 samples after every step.
         samples: The indices of the samples to keep, ascending; ``None`` keeps all of them.
         initial: Whether the state before the first step is kept too, as a row of its own in front.
+        until: Seconds that the simulation must reach: a simulator refuses a record whose last sample would
+            come before. It changes nothing else.
     """
 
     tracks: tuple[str, ...]
     every: float = 0.0
     samples: tuple[int, ...] | None = None
     initial: bool = False
+    until: float = 0.0
 
 
 @attrs.frozen(eq=False)
@@ -81,7 +90,8 @@ class Outcome:
     Attributes:
         steps: ``int64[samples]``, how many steps had been made at each sample.
         times: ``float64[samples]``, the simulated time of each sample, s.
-        tracks: Name -> ``float64[samples, 3]``, positions in metres; NaN from the divergence on.
+        tracks: Name -> ``float64[samples, 3]``, positions in metres, or what the simulator documents of a
+            track that is no point; NaN from the divergence on.
         diverged_at: The step at which the simulation diverged, or ``None``. What could not even begin has
             diverged at step 0, and may have no samples.
     """
@@ -90,6 +100,39 @@ class Outcome:
     times: NDArray[np.float64]
     tracks: Mapping[str, NDArray[np.float64]]
     diverged_at: int | None = None
+
+
+@attrs.frozen
+class Export:
+    """A design with its settings, as a file that other programs read.
+
+    Attributes:
+        data: The bytes of the file.
+        left_out: What the format cannot say, one entry for each setting, in words, such as
+            ``fluid drag (750 kg/m3)``.
+    """
+
+    data: bytes
+    left_out: tuple[str, ...] = ()
+
+
+@attrs.frozen(eq=False)
+class Variant:
+    """A simulation of a design with one thing changed, which shows what its score rests on.
+
+    Attributes:
+        name: What was changed, as the table of ``evoframe verify`` shows it. Variants of one name are draws
+            of one random change.
+        simulator: Simulates it.
+        design: What is simulated.
+        record: What is recorded: as many samples of the same tracks as in the unchanged simulation, so that
+            the same objective can score them.
+    """
+
+    name: str
+    simulator: Simulator
+    design: Design
+    record: Record
 
 
 @attrs.frozen

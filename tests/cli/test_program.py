@@ -72,6 +72,8 @@ def test_says_its_version(evoframe: Evoframe) -> None:
         [],
         ["run"],
         ["simulate"],
+        ["verify"],
+        ["export"],
         ["plugins"],
         ["plugins", "list"],
         ["config"],
@@ -86,7 +88,16 @@ def test_every_command_has_help(evoframe: Evoframe, command: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [["run"], ["simulate"], ["plugins", "list"], ["config", "show"], ["completion"]]
+    "command",
+    [
+        ["run"],
+        ["simulate"],
+        ["verify"],
+        ["export"],
+        ["plugins", "list"],
+        ["config", "show"],
+        ["completion"],
+    ],
 )
 def test_help_has_examples(evoframe: Evoframe, command: list[str]) -> None:
     assert re.search(r"Examples?:\n\s+\S*.*evoframe", evoframe(*command, "-h").stdout)
@@ -220,6 +231,51 @@ class TestRun:
         finished = package.load_run(tmp_path / "here")
         assert finished.summary["turns"] == 8
         assert sum(pair["turn"] == 9 for pair in finished.pairs) == 1
+
+    def test_ends_with_the_verification_of_its_champion(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        command = ["run", "-p", toys.__file__, "toy.toml", "--set", "simulator=toy-varied"]
+        ran = evoframe(*command, "--out", "here")
+        assert ran.returncode == 0, ran.stderr
+        summary, table = ran.stdout.split("\n\n")
+        assert "best pair simulated" in summary
+        assert [line.split()[0] for line in table.splitlines()] == [
+            "variant", "unchanged", "gain", "no", "one",
+        ]  # fmt: skip
+        assert "verifying the champion" in ran.stderr
+        quiet = evoframe("-q", *command, "--out", "quiet")
+        assert (quiet.stdout, quiet.stderr) == ("quiet\n", "")
+        stored = [(tmp_path / name / "verification.json").read_bytes() for name in ("here", "quiet")]
+        assert stored[0] == stored[1]
+
+    def test_without_variants_says_nothing_of_a_verification(
+        self, evoframe: Evoframe, tmp_path: Path
+    ) -> None:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        ran = evoframe("run", "-p", toys.__file__, "toy.toml", "--out", "here")
+        assert (ran.returncode, "verify" in ran.stderr, "unchanged" in ran.stdout) == (0, False, False)
+
+    def test_a_verification_that_fails_is_an_error_after_the_summary(
+        self, evoframe: Evoframe, tmp_path: Path
+    ) -> None:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        ran = evoframe(
+            "run", "-p", toys.__file__, "toy.toml", "--set", "simulator=toy-unverifiable", "--out", "here"
+        )
+        assert ran.returncode == 1
+        assert "best pair simulated" in ran.stdout
+        assert ran.stderr.splitlines()[-1] == (
+            "Error: here: the run is complete and saved, but its champion cannot be verified: no variant fits"
+        )
+        assert package.load_run(tmp_path / "here").summary["turns"] == 8
+
+    def test_an_interrupt_of_the_verification_leaves_the_complete_run(self, tmp_path: Path) -> None:
+        with slow_run(tmp_path, "simulator={name='toy-unverifiable', delay=3600.0}") as process:
+            read_until(process, "verifying the champion")
+            process.send_signal(signal.SIGINT)
+            read_until(process, "Interrupted; the run is complete and saved in here, but not verified")
+            assert process.wait(60) == 130
+        assert package.load_run(tmp_path / "here").summary["turns"] == 8
 
     def test_names_are_shown_as_they_are_written(self, evoframe: Evoframe) -> None:
         ran = evoframe("run", "quick", "--set", "run.generations=0", "--out", "r[/a] [bold]x :smile:")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import csv
+import functools
 import json
-import subprocess
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-Evoframe = Callable[..., subprocess.CompletedProcess[str]]
+import toys
+from processes import Evoframe
 
 DATA = Path(__file__).parents[1] / "data"
 GOLDEN = DATA / "paper_preset.npz"
@@ -68,6 +68,67 @@ def test_a_trace_has_a_row_for_each_step(
     assert np.abs(times - golden["time"]).max() < 1e-12
     assert np.abs(tip - golden["tip"][3]).max() < 1e-9
     assert np.abs(face - golden["free_face_mean"][3]).max() < 1e-9
+
+
+WITH_ENERGY = """
+import attrs, numpy, toys
+from evoframe import hookimpl
+
+@attrs.frozen
+class Warm(toys.Varied):
+    tracks = ("value", "energy", "other")
+
+    def simulate(self, designs, record):
+        outcomes = super().simulate(designs, record)
+        more = {"energy": numpy.zeros((1, 2)), "other": numpy.ones((1, 3))}
+        return [attrs.evolve(outcome, tracks={**outcome.tracks, **more}) for outcome in outcomes]
+
+@hookimpl
+def evoframe_simulators():
+    return {"warm": Warm}
+"""
+
+
+def test_a_trace_has_only_points(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "warm.py").write_text(WITH_ENERGY)
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "one.toy").write_text("designs = [{ a = 2.0 }]\n")
+    traced = evoframe(
+        *("simulate", "-p", toys.__file__, "-p", "warm.py", "one.toy", "--preset", "toy.toml"),
+        *("--set", "simulator=warm", "--trace", "trace.csv"),
+        PYTHONPATH=str(Path(toys.__file__).parent),
+    )
+    assert traced.returncode == 0, traced.stderr
+    assert (tmp_path / "trace.csv").read_text().splitlines() == [
+        "step,time,value_x,value_y,value_z,other_x,other_y,other_z",
+        "1,1.0,2.0,2.0,2.0,1.0,1.0,1.0",
+    ]
+
+
+class TestFileWithItsOwnSettings:
+    """A toy's; those of ``vxa`` are in ``test_export.py``."""
+
+    @pytest.fixture
+    def simulate(self, evoframe: Evoframe, tmp_path: Path) -> Evoframe:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        path = tmp_path / "one.toy"
+        path.write_text("designs = [{ a = 2.0 }]\nsettings = { gain = 4.0 }\n")
+        command = ["simulate", "-p", toys.__file__, path, "--preset", "toy.toml"]
+        return functools.partial(evoframe, *command, "--set", "simulator=toy-varied")
+
+    def test_is_simulated_with_them(self, simulate: Evoframe) -> None:
+        assert json.loads(simulate("--json").stdout)["displacement"] == [8.0]
+
+    def test_is_simulated_with_what_is_set_all_the_same(self, simulate: Evoframe) -> None:
+        result = json.loads(simulate("--json", "--set", "simulator.gain=3").stdout)
+        assert result["displacement"] == [6.0]
+
+    def test_is_named_when_one_of_them_is_wrong(self, simulate: Evoframe, tmp_path: Path) -> None:
+        path = tmp_path / "one.toy"
+        path.write_text("designs = [{ a = 2.0 }]\nsettings = { gian = 4.0 }\n")
+        refused = simulate()
+        assert refused.returncode == 2
+        assert f"{path}: simulator.gian: unknown option; did you mean 'gain'?" in refused.stderr
 
 
 def test_a_trace_of_several_bodies_is_refused(evoframe: Evoframe, tmp_path: Path) -> None:

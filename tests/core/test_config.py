@@ -278,7 +278,7 @@ class TestRealComponents:
                 ["--set simulator.duration=0.03: objective: ", "sample 5", "simulator.duration = 0.03 s"],
             ),
             ("simulator.voxel_size=1e9", ["simulator: ", "voxel_size", "1000000000.0"]),
-            ("simulator.duration=1e300", ["simulator: ", "time step"]),
+            ("simulator.duration=1e300", ["simulator: ", "duration", "1e+300"]),
             ("simulator.phase_unit=degrees", ['expected one of "cycles", "radians", found "degrees"']),
             ("objective.last=0", ["objective.last: must be >= 1, found 0"]),
             ("objective.first=7", ["objective: first must come before last"]),

@@ -88,6 +88,15 @@ class TestRecord:
         shell[1:-1, 1:-1, 1:-1] = 1
         assert (shell == 1).all()
 
+    def test_the_champion_is_verified_and_can_be_read_by_the_original_engine(self, short: Run) -> None:
+        verification = short.verification
+        assert verification is not None
+        assert verification.unchanged.value == short.champion.score
+        shares = {finding.name: verification.share(finding) for finding in verification.findings}
+        assert len(shares) == 5
+        assert shares["contraction off"] is not None
+        assert (short.directory / "champion.vxa").read_bytes().startswith(b"<?xml")
+
 
 class TestDeterminism:
     def test_twice_in_a_row_gives_the_same(self, short: Run, tmp_path: Path) -> None:
@@ -132,6 +141,8 @@ class TestSwaps:
             {"collaboration.n": 4, "aggregator": {"name": "wm", "weights": [0.4, 0.3, 0.2, 0.1]}},
             {"objective": "tip-yz"},
             {"objective": "face-yz"},
+            {"objective": {"name": "face-peak", "after": 0.02}},
+            {"objective": {"name": "travel", "along": "-y", "every": 0.01}},
             {"simulator.phase_unit": "radians"},
             {"populations.morphology.evolver": "random", "populations.controller.evolver": "random"},
             {"populations.morphology.encoder.enclosure": False},

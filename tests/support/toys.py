@@ -6,22 +6,28 @@ A genome is a number, a design has one number for each role, and a score is thei
 from __future__ import annotations
 
 import time
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 import attrs
 import numpy as np
+import tomli_w
 from attrs import validators
 from numpy.typing import NDArray
 
 from evoframe import (
     ConfigurationError,
     Design,
+    Export,
+    InputError,
     Member,
     Network,
     Outcome,
     Record,
     Scores,
+    Variant,
     hookimpl,
 )
 
@@ -182,6 +188,8 @@ class Product:
         for track in record.tracks:
             if track not in self.tracks:
                 raise ConfigurationError(f"toy-product has no track '{track}'")
+        if record.until > 1.0:
+            raise ConfigurationError(f"toy-product ends at 1.0 s, before {record.until} s")
 
     def key(self, design: Design, record: Record) -> bytes:
         return repr((sorted((r, a.tolist()) for r, a in design.roles.items()), record)).encode()
@@ -209,11 +217,104 @@ class Slow(Product):
 
 
 @attrs.frozen
+class Varied(Product):
+    """Has all that a simulator may offer: files to read and to write, and variants.
+
+    Its files, ``.toy``, are TOML: ``designs``, and perhaps ``settings``.
+    """
+
+    gain: float = attrs.field(default=1.0, validator=validators.ge(0))
+    formats: ClassVar[tuple[str, ...]] = ("toy", "txt")
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        return [self._amplified(outcome) for outcome in super().simulate(designs, record)]
+
+    def read(self, path: Path) -> list[tuple[str, Design]]:
+        designs = self._parsed(path)["designs"]
+        return [(f"{path.name}[{n}]", self._design(numbers)) for n, numbers in enumerate(designs)]
+
+    def settings_of(self, path: Path) -> Mapping[str, Any] | None:
+        settings: Mapping[str, Any] | None = self._parsed(path).get("settings")
+        return settings
+
+    def export(self, design: Design, format_: str) -> Export:
+        numbers = {role: float(array[0]) for role, array in design.roles.items()}
+        if format_ == "txt":
+            return Export(f"{numbers}\n".encode(), ("gain", "limit") if self.gain != 1 else ())
+        settings = {"limit": self.limit, "gain": self.gain}
+        return Export(tomli_w.dumps({"designs": [numbers], "settings": settings}).encode())
+
+    def variants(self, design: Design, record: Record) -> Sequence[Variant]:
+        draws = [
+            design.with_role(role, array * factor)
+            for role, array in design.roles.items()
+            for factor in (0.9, 1.1)
+        ]
+        return [
+            Variant("gain off", attrs.evolve(self, gain=0.0), design, record),
+            Variant("no room", attrs.evolve(self, limit=0.0), design, record),
+            *(Variant("one number jittered by 10 %", self, drawn, record) for drawn in draws),
+        ]
+
+    def _amplified(self, outcome: Outcome) -> Outcome:
+        return attrs.evolve(outcome, tracks={"value": self.gain * outcome.tracks["value"]})
+
+    def _parsed(self, path: Path) -> dict[str, Any]:
+        try:
+            return tomllib.loads(path.read_text())
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+
+    def _design(self, numbers: Mapping[str, float]) -> Design:
+        return Design({role: np.array([number], dtype=np.float64) for role, number in numbers.items()})
+
+
+@attrs.frozen
+class Fitting(Varied):
+    """Has two options that must fit together."""
+
+    def __attrs_post_init__(self) -> None:
+        if self.gain > self.limit:
+            raise ValueError(f"gain = {self.gain} is more than limit = {self.limit}")
+
+
+@attrs.frozen
+class Unverifiable(Varied):
+    """Fails when variants are asked for, after a while."""
+
+    delay: float = 0.0
+
+    def variants(self, design: Design, record: Record) -> Sequence[Variant]:
+        time.sleep(self.delay)
+        raise InputError("no variant fits")
+
+
+@attrs.frozen
+class Demanding(Product):
+    """Needs a role."""
+
+    requires: ClassVar[tuple[str, ...]] = ("morphology",)
+
+
+@attrs.frozen
 class Value:
     record: ClassVar[Record] = Record(tracks=("value",))
 
     def score(self, outcome: Outcome) -> float:
         return float(outcome.tracks["value"][0, 0])
+
+
+@attrs.frozen
+class Late(Value):
+    """Needs a simulation of some seconds."""
+
+    unit: ClassVar[str] = "m"
+
+    until: float = 0.0
+
+    @property
+    def record(self) -> Record:  # type: ignore[override]
+        return Record(tracks=("value",), until=self.until)
 
 
 CLOSED: list[Any] = []
@@ -256,12 +357,19 @@ def evoframe_evolvers() -> Mapping[str, type[Any]]:
 
 @hookimpl
 def evoframe_simulators() -> Mapping[str, type[Any]]:
-    return {"toy-product": Product, "toy-slow": Slow}
+    return {
+        "toy-product": Product,
+        "toy-slow": Slow,
+        "toy-varied": Varied,
+        "toy-fitting": Fitting,
+        "toy-demanding": Demanding,
+        "toy-unverifiable": Unverifiable,
+    }
 
 
 @hookimpl
 def evoframe_objectives() -> Mapping[str, type[Any]]:
-    return {"toy-value": Value}
+    return {"toy-value": Value, "toy-late": Late}
 
 
 @hookimpl

@@ -35,6 +35,21 @@ class RiseAtTwoSamples(Rise):
         return float(outcome.tracks["tip"][2, 2] - outcome.tracks["base"][1, 2])
 
 
+@attrs.frozen
+class RiseAfterASecond(Rise):
+    """Needs a simulation that lasts."""
+
+    record: ClassVar[Record] = Record(("tip",), until=1.0)
+
+    def score(self, outcome: Outcome) -> Any:
+        late = outcome.tracks["tip"][outcome.times >= 1.0]
+        return float(late[-1, 2] - late[0, 2])
+
+
+class TestRiseAfterASecond(ObjectiveContract):
+    component = RiseAfterASecond()
+
+
 class TestRise(ObjectiveContract):
     component = Rise()
 

@@ -1,3 +1,4 @@
+import itertools
 import time
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
@@ -8,12 +9,14 @@ import pytest
 from contracts import name_of
 from numpy.typing import NDArray
 
-from evoframe import ConfigurationError, Design, Outcome, Record
+from evoframe import ConfigurationError, Design, Export, Outcome, Record, Variant
 from evoframe.testing import SimulatorContract
 
 ACCEPTED = "test_a_record_of_its_tracks_is_accepted"
 TRACK = "test_an_unknown_track_is_refused"
 END = "test_a_sample_after_the_end_is_refused"
+UNTIL = "test_an_end_before_the_time_to_be_reached_is_refused"
+ONLY_UNTIL = "test_the_time_to_be_reached_changes_nothing"
 EACH = "test_each_design_has_an_outcome"
 ARRAYS = "test_outcomes_have_the_promised_arrays"
 TIME = "test_time_goes_on"
@@ -28,6 +31,9 @@ INITIAL = "test_the_initial_state_is_one_more_row"
 OFTEN = "test_sampling_more_often_changes_nothing"
 KEYS = "test_keys_are_bytes_and_equal_for_equal_designs"
 EQUAL_KEYS = "test_equal_keys_mean_equal_outcomes"
+VARIANTS = "test_variants_are_scored_by_the_same_objective"
+SAME_VARIANTS = "test_the_same_design_has_the_same_variants"
+FORMATS = "test_each_format_gives_the_same_bytes_twice"
 
 STEPS, STEP = 12, 0.01
 
@@ -49,6 +55,8 @@ class Spring:
                 raise ConfigurationError(f"there is no track '{track}'")
         if record.samples and max(record.samples) >= len(self.sampled(record)):
             raise ConfigurationError(f"there are only {len(self.sampled(record))} samples")
+        if record.until > self.kept(record)[-1] * STEP:
+            raise ConfigurationError(f"{record.until} s are not reached")
 
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
         return [self.one(design, record) for design in designs]
@@ -112,6 +120,111 @@ class TestSpringWithinASelection(SpringContract):
 
     def record(self) -> Record:
         return Record(("weight",), every=0.02, samples=(1, 2, 4), initial=True)
+
+
+@attrs.frozen
+class Offering(Spring):
+    """A sound simulator with files and variants, and the base of those that are not."""
+
+    strength: float = 1.0
+    formats: ClassVar[tuple[str, ...]] = ("txt",)
+
+    def export(self, design: Design, format_: str) -> Any:
+        return Export(repr(design.roles["spring"].tolist()).encode(), ("colour",))
+
+    def variants(self, design: Design, record: Record) -> Sequence[Any]:
+        return [
+            Variant("stronger", Offering(strength=2.0), design, record),
+            *(Variant("jittered", self, drawn, record) for drawn in self.drawn(design)),
+        ]
+
+    def drawn(self, design: Design) -> Sequence[Design]:
+        draws = np.random.default_rng(1).uniform(0.99, 1.01, 3)
+        return [design.with_role("spring", design.roles["spring"] * draw) for draw in draws]
+
+
+class TestOffering(SpringContract):
+    component = Offering()
+
+
+class TestOfferingWithinASelection(SpringContract):
+    component = Offering()
+
+    def record(self) -> Record:
+        return Record(("weight",), every=0.02, samples=(1, 2, 4), initial=True)
+
+
+class DrawsAnew(Offering):
+    calls: ClassVar[Any] = itertools.count()
+
+    def drawn(self, design: Design) -> Sequence[Design]:
+        return [design.with_role("spring", design.roles["spring"] + next(self.calls))]
+
+
+class NamelessVariant(Offering):
+    def variants(self, design: Design, record: Record) -> Sequence[Any]:
+        return [Variant(" ", self, design, record)]
+
+
+class VariesNothing(Offering):
+    def variants(self, design: Design, record: Record) -> Sequence[Any]:
+        return [Variant("unchanged", self, design, record)]
+
+
+class VariantOfTooManySamples(Offering):
+    def variants(self, design: Design, record: Record) -> Sequence[Any]:
+        return [Variant("finer", self, design, attrs.evolve(record, samples=(0, 1, 2, 3)))]
+
+
+class VariantOfAnotherTrack(Offering):
+    def variants(self, design: Design, record: Record) -> Sequence[Any]:
+        return [Variant("middle", self, design, attrs.evolve(record, tracks=("middle",)))]
+
+
+class VariantThatIsRefused(Offering):
+    def variants(self, design: Design, record: Record) -> Sequence[Any]:
+        return [Variant("later", self, design, attrs.evolve(record, until=1e9))]
+
+
+class ExportsText(Offering):
+    def export(self, design: Design, format_: str) -> Any:
+        return Export("text", ())  # type: ignore[arg-type]
+
+
+class ExportsNothing(Offering):
+    def export(self, design: Design, format_: str) -> Any:
+        return Export(b"", ())
+
+
+class ExportsTheCall(Offering):
+    calls: ClassVar[Any] = itertools.count()
+
+    def export(self, design: Design, format_: str) -> Any:
+        return Export(str(next(self.calls)).encode())
+
+
+class LeavesOutWithoutWords(Offering):
+    def export(self, design: Design, format_: str) -> Any:
+        return Export(b"spring", ("",))
+
+
+class WritesTheChampionsName(Offering):
+    formats = ("json",)
+
+
+class WritesAPath(Offering):
+    formats = ("../txt",)
+
+
+class IgnoresTheTimeToBeReached(Spring):
+    def check(self, record: Record) -> None:
+        super().check(attrs.evolve(record, until=0.0))
+
+
+class StopsWhenItIsReached(Spring):
+    def kept(self, record: Record) -> NDArray[np.int64]:
+        steps = super().kept(record)
+        return steps[steps * STEP <= record.until] if record.until else steps
 
 
 class AcceptsAnyTrack(Spring):
@@ -249,6 +362,8 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
     [
         (AcceptsAnyTrack(), TRACK),
         (AcceptsAnyTrack(), END),
+        (IgnoresTheTimeToBeReached(), UNTIL),
+        (StopsWhenItIsReached(), ONLY_UNTIL),
         (ForgetsTheLast(), EACH),
         (NoEmptyBatch(), EACH),
         (AddsOutcomes(), BATCH),
@@ -270,6 +385,16 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (KeyOfIdentity(), KEYS),
         (KeyWithoutDamping(), EQUAL_KEYS),
         (KeyWithoutRecord(), EQUAL_KEYS),
+        (NamelessVariant(), VARIANTS),
+        (VariesNothing(), VARIANTS),
+        (VariantOfAnotherTrack(), VARIANTS),
+        (DrawsAnew(), SAME_VARIANTS),
+        (ExportsText(), FORMATS),
+        (ExportsNothing(), FORMATS),
+        (ExportsTheCall(), FORMATS),
+        (LeavesOutWithoutWords(), FORMATS),
+        (WritesTheChampionsName(), FORMATS),
+        (WritesAPath(), FORMATS),
     ],
     ids=name_of,
 )
@@ -284,6 +409,12 @@ def test_a_lost_sample_is_caught(breaks: Callable[..., None]) -> None:
 
 def test_a_record_that_is_refused_is_caught(breaks: Callable[..., None]) -> None:
     breaks(SpringContract, RefusesEverything(), ACCEPTED, error=ConfigurationError)
+    breaks(SpringContract, VariantThatIsRefused(), VARIANTS, error=ConfigurationError)
+
+
+def test_a_variant_that_no_objective_can_score_is_caught(breaks: Callable[..., None]) -> None:
+    record = Record(("weight",), samples=(1, 4))
+    breaks(SpringContract, VariantOfTooManySamples(), VARIANTS, record=lambda _: record)
 
 
 def test_too_few_examples_are_caught(breaks: Callable[..., None]) -> None:

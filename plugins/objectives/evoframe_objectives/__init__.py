@@ -1,14 +1,21 @@
-"""The built-in objectives: how far the free end of an actuator moves."""
+"""The built-in objectives: how far an actuator or a walker moves."""
 
 from collections.abc import Mapping
 
 from evoframe import Objective, hookimpl
 from evoframe_objectives.displacement import FaceYz, TipDz, TipYz
+from evoframe_objectives.settled import FacePeak, Travel
 
-__all__ = ["FaceYz", "TipDz", "TipYz", "evoframe_objectives"]
+__all__ = ["FacePeak", "FaceYz", "TipDz", "TipYz", "Travel", "evoframe_objectives"]
 
 
 @hookimpl
 def evoframe_objectives() -> Mapping[str, type[Objective]]:
-    """Offer the displacements of paper.md, "The simulation of one pair"."""
-    return {"face-yz": FaceYz, "tip-dz": TipDz, "tip-yz": TipYz}
+    """Offer the displacements of paper.md, and the distance that a free body travels."""
+    return {
+        "face-peak": FacePeak,
+        "face-yz": FaceYz,
+        "tip-dz": TipDz,
+        "tip-yz": TipYz,
+        "travel": Travel,
+    }

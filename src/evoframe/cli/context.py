@@ -23,6 +23,7 @@ __all__ = [
     "is_quiet",
     "output",
     "plugins_of",
+    "preset_option",
     "scored",
     "set_option",
     "unit_of",
@@ -142,6 +143,17 @@ def configuration_argument(function: F) -> F:
     """Add the argument that names a preset or a file."""
     return click.argument(
         "source", metavar="[CONFIG|PRESET]", default="paper", shell_complete=_complete_preset
+    )(function)
+
+
+def preset_option(function: F) -> F:
+    """Add ``--preset P`` to a command that takes files."""
+    return click.option(
+        "--preset",
+        metavar="P",
+        shell_complete=_complete_preset,
+        help="What the file does not say is as in this preset; a champion is simulated as in its run, "
+        "unless a preset is named.  [default: paper]",
     )(function)
 
 

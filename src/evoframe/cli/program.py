@@ -12,9 +12,11 @@ from evoframe._version import __version__
 from evoframe.cli.completion import completion
 from evoframe.cli.config import config
 from evoframe.cli.context import common_options, plugins_of
+from evoframe.cli.export import export
 from evoframe.cli.plugins import plugins
 from evoframe.cli.run import run
 from evoframe.cli.simulate import simulate
+from evoframe.cli.verify import verify
 from evoframe.errors import EvoframeError, PluginWarning, RunError
 from evoframe.observers import Observers
 
@@ -68,6 +70,8 @@ Examples:
   evoframe run quick                          a few seconds of it
   evoframe run --set aggregator=hm --seed 7
   evoframe simulate runs/paper-1/champion.json
+  evoframe verify runs/paper-1                is its champion real?
+  evoframe export runs/paper-1 --to vxa
   evoframe plugins list
 """
 
@@ -87,7 +91,7 @@ def cli() -> None:
     """
 
 
-for command in (completion, config, plugins, run, simulate):
+for command in (completion, config, export, plugins, run, simulate, verify):
     cli.add_command(command)
 
 

@@ -23,12 +23,13 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.progress import Progress
-from evoframe.config import RunConfig
+from evoframe.cli.verify import verification_table
 from evoframe.layers import Layer, layer_of
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
 from evoframe.resolve import load_config
-from evoframe.run import prepare
+from evoframe.run import Execution, prepare
+from evoframe.verification import can_verify
 
 __all__ = ["run"]
 
@@ -65,30 +66,48 @@ def run(
 ) -> None:
     """Run a coevolution: a TOML file, or a preset (without argument: paper).
 
-    Ctrl-C stops after the turn in progress; everything up to then is saved.
+    Ctrl-C stops after the turn in progress; everything up to then is saved. At the end the champion is
+    verified, as evoframe verify does.
     """
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins_of(ctx))
     if not is_quiet(ctx):
         config.discovered.manager.register(Progress(), name="evoframe:progress")
-    with _stop_on_interrupt() as stop:
-        _execute(ctx, config, out, stop)
-
-
-def _execute(ctx: click.Context, config: RunConfig, out: Path | None, stop: _Stop) -> None:
-    """Run and say what came of it; a second interrupt gives the turn in progress up."""
     execution = prepare(config, out)
-    try:
-        completed = execution.play(Observers(config.discovered.manager), stop.is_asked)
-    except KeyboardInterrupt:
-        completed = False
-    if not completed:
+    if not _play(execution):
         click.echo(_interrupted(load_run(execution.directory)), err=True)
         ctx.exit(_INTERRUPTED)
-    elif is_quiet(ctx):
+    quiet = is_quiet(ctx)
+    if quiet:
         click.echo(execution.directory)
     else:
         output().print(_summary(load_run(execution.directory), unit_of(config)))
+    try:
+        _verify(execution, quiet)
+    except KeyboardInterrupt:
+        unverified = f"Interrupted; the run is complete and saved in {execution.directory}, but not verified"
+        click.echo(unverified, err=True)
+        ctx.exit(_INTERRUPTED)
+
+
+def _play(execution: Execution) -> bool:
+    """Run, and return whether to the end; a second interrupt gives the turn in progress up."""
+    with _stop_on_interrupt() as stop:
+        try:
+            return execution.play(Observers(execution.config.discovered.manager), stop.is_asked)
+        except KeyboardInterrupt:
+            return False
+
+
+def _verify(execution: Execution, quiet: bool) -> None:
+    """Verify the champion, if that can be done, and show what came of it."""
+    if not quiet and can_verify(execution.config.simulator.component):
+        click.echo("verifying the champion", err=True)
+    verification = execution.verify()
+    if verification is not None and not quiet:
+        console = output()
+        console.print()
+        console.print(verification_table(verification))
 
 
 def _interrupted(stopped: Run) -> str:

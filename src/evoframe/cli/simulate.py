@@ -7,26 +7,24 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-import attrs
 import click
 from rich.table import Table
 
-from evoframe.champion import read_champion
 from evoframe.cli.context import (
     common_options,
     output,
     plugins_of,
+    preset_option,
     scored,
     set_option,
     unit_of,
     workers_option,
 )
 from evoframe.config import RunConfig
-from evoframe.errors import ConfigurationError, InputError
+from evoframe.errors import InputError
 from evoframe.evaluation import Score
+from evoframe.jobs import Job, naming, read_job
 from evoframe.layers import Layer
-from evoframe.plugins import Plugins
-from evoframe.resolve import load_config
 from evoframe.run import evaluator_of
 from evoframe.values import Design, Record
 
@@ -40,19 +38,9 @@ Examples:
 """
 
 
-@attrs.frozen
-class _Job:
-    """The designs of one file, and the configuration that they are simulated with."""
-
-    path: Path
-    config: RunConfig
-    labels: tuple[str, ...]
-    designs: tuple[Design, ...]
-
-
 @click.command(epilog=_EPILOG)
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--preset", metavar="P", help="Simulate as this preset does (a champion: as its run did).")
+@preset_option
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with full precision.")
 @click.option(
@@ -75,10 +63,11 @@ def simulate(
 ) -> None:
     """Simulate given bodies and print the displacement of each.
 
-    A FILE is a run's champion.json, or an .npz with material ([X,Y,Z] or [N,X,Y,Z]; codes 0 empty, 1 passive,
-    3 contractile) and phase_cycles of the same shape.
+    A FILE is a run's champion.json, which is simulated as in its run; or what the simulator reads: an .npz
+    with material ([X,Y,Z] or [N,X,Y,Z]; codes 0 empty, 1 passive, 3 contractile) and phase_cycles of the same
+    shape, or a .vxa, which brings its own settings with it.
     """
-    jobs = [_read(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
+    jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
     if trace is not None:
         _write_trace(trace, jobs)
     scores = [_evaluate(job) for job in jobs]
@@ -88,33 +77,11 @@ def simulate(
         output().print(_table(jobs, scores))
 
 
-def _read(path: Path, preset: str | None, overrides: list[str | Layer], plugins: Plugins) -> _Job:
-    if path.suffix == ".json":
-        design, simulation, _ = read_champion(path)
-        own = [] if preset else [Layer(str(path), simulation)]
-        config = load_config(preset or "paper", overrides=[*own, *overrides], plugins=plugins)
-        _check_roles(path, design, config)
-        return _Job(path, config, (path.name,), (design,))
-    config = load_config(preset or "paper", overrides=overrides, plugins=plugins)
-    read = getattr(config.simulator.component, "read", None)
-    if read is None:
-        raise ConfigurationError(f"the simulator '{config.simulator.name}' reads no files")
-    labels, designs = zip(*read(path), strict=True)
-    return _Job(path, config, labels, designs)
-
-
-def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
-    missing = [role for role in config.simulator.component.requires if role not in design.roles]
-    if missing:
-        raise InputError(f"{path}: design: has no {' and no '.join(missing)}")
-
-
-def _evaluate(job: _Job) -> list[Score]:
+def _evaluate(job: Job) -> list[Score]:
     evaluator = evaluator_of(job.config)
     try:
-        return evaluator.evaluate(job.designs)
-    except InputError as error:
-        raise InputError(f"{job.path}: {error}") from error
+        with naming(job.path):
+            return evaluator.evaluate(job.designs)
     finally:
         evaluator.close()
 
@@ -128,7 +95,7 @@ def _json(scores: list[Score]) -> str:
     )
 
 
-def _table(jobs: list[_Job], scores: list[list[Score]]) -> Table:
+def _table(jobs: list[Job], scores: list[list[Score]]) -> Table:
     table = Table(box=None, header_style="bold")
     table.add_column("body", overflow="fold")
     table.add_column("displacement", overflow="fold")
@@ -140,19 +107,18 @@ def _table(jobs: list[_Job], scores: list[list[Score]]) -> Table:
     return table
 
 
-def _write_trace(path: Path, jobs: list[_Job]) -> None:
+def _write_trace(path: Path, jobs: list[Job]) -> None:
     bodies = [(job, design) for job in jobs for design in job.designs]
     if len(bodies) != 1:
         raise InputError(f"--trace writes the trace of one body, but {len(bodies)} were given")
     [(job, design)] = bodies
-    try:
+    with naming(job.path):
         rows = list(_trace(job.config, design))
+    try:
         with path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-    except InputError as error:
-        raise InputError(f"{job.path}: {error}") from error
 
 
 def _trace(config: RunConfig, design: Design) -> Iterator[list[str]]:
@@ -160,7 +126,9 @@ def _trace(config: RunConfig, design: Design) -> Iterator[list[str]]:
     simulator = config.simulator.component
     record = Record(tracks=simulator.tracks, initial=True)
     [outcome] = simulator.simulate([design], record)
-    yield ["step", "time", *(f"{track}_{axis}" for track in record.tracks for axis in "xyz")]
-    for row, (step, time) in enumerate(zip(outcome.steps.tolist(), outcome.times.tolist(), strict=True)):
-        points = [value for track in record.tracks for value in outcome.tracks[track][row].tolist()]
-        yield [str(step), repr(time), *map(repr, points)]
+    steps, times = outcome.steps.tolist(), outcome.times.tolist()
+    points = [name for name in record.tracks if outcome.tracks[name].shape == (len(steps), 3)]
+    yield ["step", "time", *(f"{name}_{axis}" for name in points for axis in "xyz")]
+    for row, (step, time) in enumerate(zip(steps, times, strict=True)):
+        positions = [value for name in points for value in outcome.tracks[name][row].tolist()]
+        yield [str(step), repr(time), *map(repr, positions)]

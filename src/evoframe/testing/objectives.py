@@ -26,7 +26,8 @@ class ObjectiveContract(ComponentContract[Objective]):
     def outcomes(self) -> st.SearchStrategy[Outcome]:
         """Return outcomes as a simulator delivers them for the objective's record."""
         record = self.component.record
-        rows = st.integers(1, 20) if record.samples is None else st.just(len(record.samples))
+        least = 1 + math.ceil(record.until / _interval(record))
+        rows = st.integers(least, least + 20) if record.samples is None else st.just(len(record.samples))
         extents = st.sampled_from([0.0, 1e-3, 1.0, 1e6])
         return st.builds(_outcome, st.just(record), rows, st.integers(0, 2**32 - 1), extents)
 
@@ -68,6 +69,10 @@ class ObjectiveContract(ComponentContract[Objective]):
         for_all(law, outcome=self.outcomes())
 
 
+def _interval(record: Record) -> float:
+    return record.every or 0.001
+
+
 def _outcome(record: Record, rows: int, seed: int, extent: float) -> Outcome:
     """Return random positions of the size of *extent* for each track."""
     samples = np.arange(rows) if record.samples is None else np.array(record.samples)
@@ -75,6 +80,6 @@ def _outcome(record: Record, rows: int, seed: int, extent: float) -> Outcome:
     rng = np.random.default_rng(seed)
     return Outcome(
         steps=steps.astype(np.int64),
-        times=np.multiply(steps, record.every or 0.001, dtype=np.float64),
+        times=np.multiply(steps, _interval(record), dtype=np.float64),
         tracks={name: rng.uniform(-extent, extent, size=(len(steps), 3)) for name in record.tracks},
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,10 +11,12 @@ import numpy as np
 import pytest
 
 from evoframe.errors import ConfigurationError
+from evoframe.exporting import export_design, formats_of
 from evoframe.protocols import Simulator
 from evoframe.testing.components import ComponentContract
-from evoframe.testing.laws import same_outcome
-from evoframe.values import Design, Outcome, Record
+from evoframe.testing.laws import same_arrays, same_outcome
+from evoframe.values import Design, Export, Outcome, Record, Variant
+from evoframe.verification import UNCHANGED, can_verify
 
 __all__ = ["SimulatorContract"]
 
@@ -22,7 +25,8 @@ class SimulatorContract(ComponentContract[Simulator]):
     """The laws of a :class:`~evoframe.Simulator`.
 
     A subclass overrides :meth:`designs`, and :meth:`diverging` if a simulation can diverge. What diverges at
-    step 0 has never begun, and may have no samples.
+    step 0 has never begun, and may have no samples. What a simulator may offer or not (variants, formats) is
+    tested where it is offered.
     """
 
     protocol = Simulator
@@ -60,6 +64,19 @@ class SimulatorContract(ComponentContract[Simulator]):
         with pytest.raises(ConfigurationError):
             self.component.check(attrs.evolve(self.record(), samples=(10**9,)))
 
+    def test_an_end_before_the_time_to_be_reached_is_refused(self) -> None:
+        """Before anything runs; a time that is reached is no reason."""
+        self.component.check(attrs.evolve(self.record(), until=0.0))
+        with pytest.raises(ConfigurationError):
+            self.component.check(attrs.evolve(self.record(), until=1e9))
+
+    def test_the_time_to_be_reached_changes_nothing(self) -> None:
+        """It only says what is too short."""
+        reached = min(float(o.times[-1]) for o in self._simulate(self.designs()) if len(o.times))
+        until = attrs.evolve(self.record(), until=reached / 2)
+        self.component.check(until)
+        _assert_same(self._simulate(self._all(), until), self._simulate(self._all()))
+
     def test_each_design_has_an_outcome(self) -> None:
         """No design, no outcome."""
         assert len(self._simulate(self.designs())) == len(self.designs())
@@ -76,9 +93,11 @@ class SimulatorContract(ComponentContract[Simulator]):
             assert outcome.times.dtype == np.float64
             assert outcome.times.shape == (samples,)
             assert set(outcome.tracks) == set(record.tracks)
-            for track in outcome.tracks.values():
+            for name, track in outcome.tracks.items():
                 assert track.dtype == np.float64
-                assert track.shape == (samples, 3)
+                assert track.shape[:1] == (samples,)
+                if name in self.component.tracks:
+                    assert track.shape == (samples, 3), f"the track '{name}' is no point"
 
     def test_time_goes_on(self) -> None:
         """From sample to sample, in steps and in seconds."""
@@ -172,6 +191,47 @@ class SimulatorContract(ComponentContract[Simulator]):
             for design, outcome in zip(self._all(), self._simulate(self._all(), record), strict=True):
                 first = known.setdefault(self.component.key(design, record), outcome)
                 assert same_outcome(first, outcome)
+
+    def test_variants_are_scored_by_the_same_objective(self) -> None:
+        """Each has a name, and an outcome with the tracks and as many samples as the unchanged simulation."""
+        record = self.record()
+        for design in self.designs():
+            [unchanged] = self._simulate([design])
+            for variant in self._variants(design):
+                assert isinstance(variant, Variant)
+                assert variant.name.strip(), "a variant needs a name"
+                assert variant.name != UNCHANGED, f"evoframe itself simulates what is {UNCHANGED}"
+                variant.simulator.check(variant.record)
+                [outcome] = variant.simulator.simulate([variant.design], variant.record)
+                assert variant.record.tracks == record.tracks
+                assert variant.record.initial == record.initial
+                assert (variant.record.samples is None) == (record.samples is None)
+                if record.samples is not None and _has_begun(outcome) and _has_begun(unchanged):
+                    assert len(outcome.steps) == len(unchanged.steps)
+
+    def test_the_same_design_has_the_same_variants(self) -> None:
+        """To the last bit, whatever chance has drawn."""
+        for design in self.designs():
+            first, second = self._variants(design), self._variants(design)
+            for one, other in zip(first, second, strict=True):
+                assert (one.name, one.simulator, one.record) == (other.name, other.simulator, other.record)
+                assert same_arrays(one.design.roles, other.design.roles)
+
+    def test_each_format_gives_the_same_bytes_twice(self) -> None:
+        """With what it cannot say in words."""
+        for format_ in formats_of(self.component):
+            assert re.fullmatch("[a-z0-9]+", format_), f"'{format_}' cannot be the ending of a file"
+            assert format_ != "json", "a run's champion.json is evoframe's own"
+            for design in self.designs():
+                first, second = (export_design(self.component, design, format_) for _ in range(2))
+                assert isinstance(first, Export)
+                assert isinstance(first.data, bytes)
+                assert first.data, "an export without any bytes"
+                assert all(isinstance(entry, str) and entry.strip() for entry in first.left_out)
+                assert first == second
+
+    def _variants(self, design: Design) -> Sequence[Variant]:
+        return self.component.variants(design, self.record()) if can_verify(self.component) else []
 
     def _all(self) -> list[Design]:
         return [*self.designs(), *self.diverging()]

@@ -1,0 +1,108 @@
+"""``evoframe verify``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+from rich.table import Table
+
+from evoframe.cli.context import (
+    common_options,
+    output,
+    plugins_of,
+    preset_option,
+    set_option,
+    workers_option,
+)
+from evoframe.evaluation import Score
+from evoframe.jobs import read_job
+from evoframe.layers import Layer
+from evoframe.verification import Finding, Verification
+from evoframe.verify import verify_job
+
+__all__ = ["verification_table", "verify"]
+
+_EPILOG = """\b
+Examples:
+  evoframe verify runs/paper-1
+  evoframe verify body.vxa bodies.npz --json
+  evoframe verify runs/paper-1 --set objective=face-yz
+"""
+
+
+@click.command(epilog=_EPILOG)
+@click.argument("sources", metavar="RUN|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@preset_option
+@set_option
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, with full precision.")
+@workers_option
+@common_options
+@click.pass_context
+def verify(
+    ctx: click.Context,
+    sources: tuple[Path, ...],
+    preset: str | None,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    workers: list[Layer],
+) -> None:
+    """Simulate designs again with one thing changed at a time, and print what is left of their scores.
+
+    A RUN is a run's directory and stands for its champion; the table is also kept there, unless --preset or
+    --set change how it is simulated. A FILE is what evoframe simulate takes.
+    """
+    jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True) for path in sources]
+    verified = [
+        (label, verification)
+        for job in jobs
+        for label, verification in zip(job.labels, verify_job(job), strict=True)
+    ]
+    if as_json:
+        click.echo(json.dumps([{"body": label, **found.to_json()} for label, found in verified]))
+        return
+    console = output()
+    for label, verification in verified:
+        console.print(label, style="bold", soft_wrap=True)
+        console.print(verification_table(verification))
+
+
+def verification_table(verification: Verification) -> Table:
+    """Return the table of a verification for a person; the first row is the unchanged design."""
+    unit = verification.unit
+    table = Table(box=None, header_style="bold")
+    table.add_column("variant", overflow="fold")
+    table.add_column("displacement" if unit == "m" else "score", overflow="fold")
+    table.add_column("of unchanged", justify="right", no_wrap=True)
+    for finding in verification.rows:
+        share = verification.share(finding)
+        table.add_row(finding.name, _told(finding, unit), "-" if share is None else _percent(share))
+    if verification.score is not None and verification.score != verification.unchanged.value:
+        table.add_row("in its run", f"{_digits(verification.score)} {unit}".rstrip(), "")
+    return table
+
+
+def _told(finding: Finding, unit: str) -> str:
+    """Return what became of a design: its score, or the median and range of several draws."""
+    values, lost = finding.values, finding.diverged_at
+    parts = [] if finding.median is None else [f"{_digits(finding.median)} {unit}".rstrip()]
+    if len(values) > 1:
+        parts.append(f"{_digits(values[0])} to {_digits(values[-1])} in {len(values)} draws")
+    if lost:
+        parts.append(_divergence(finding.scores, lost))
+    return ", ".join(parts)
+
+
+def _divergence(scores: tuple[Score, ...], lost: list[int]) -> str:
+    share = "" if len(scores) == 1 else f"{len(lost)} of {len(scores)} "
+    steps = f"step {lost[0]}" if lost[0] == lost[-1] else f"steps {lost[0]} to {lost[-1]}"
+    return f"{share}diverged at {steps}"
+
+
+def _digits(value: float) -> str:
+    return f"{value:z.5g}"  # z: without a negative zero
+
+
+def _percent(share: float) -> str:
+    return f"{share:z.0%}"
