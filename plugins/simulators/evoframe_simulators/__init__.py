@@ -3,9 +3,11 @@
 from collections.abc import Mapping
 
 from evoframe import Simulator, hookimpl
+from evoframe_simulators.materials import PaletteMaterial
+from evoframe_simulators.regions import FixedRegion
 from evoframe_simulators.vox import Vox
 
-__all__ = ["Vox", "evoframe_simulators"]
+__all__ = ["FixedRegion", "PaletteMaterial", "Vox", "evoframe_simulators"]
 
 
 @hookimpl

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE, Design, InputError
+from evoframe import CONTROLLER, EMPTY, MORPHOLOGY, Design, InputError
+from evoframe_simulators.materials import PaletteMaterial, described
 from evoframe_simulators.npz import PackedArray, open_npz
 
-__all__ = ["check_design", "read_bodies"]
+__all__ = ["MOST_CELLS", "check_codes", "check_cycles", "check_design", "read_bodies"]
 
-_MOST_CELLS = 2**24
+MOST_CELLS = 2**24
+"""Of a canvas; more would not fit into the solver, either."""
+
 _MOST_CYCLES = 1e6  # beyond, single precision knows no fraction of a cycle
 
 
@@ -35,8 +39,38 @@ def _described(array: NDArray[Any]) -> str:
     return f"{array.dtype}{list(array.shape)}"
 
 
-def read_bodies(path: Path) -> list[tuple[str, NDArray[np.uint8], NDArray[np.float64]]]:
+def check_codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]) -> None:
+    """Refuse bodies with a cell that is neither empty nor of one of the materials.
+
+    Raises:
+        InputError: Says which code was found, and what there is.
+    """
+    wrong = material[~np.isin(material, (EMPTY, *materials))]
+    if wrong.size:
+        raise InputError(f"material has the code {wrong[0]}; codes: {described(materials)}")
+
+
+def check_cycles(cycles: NDArray[np.float64], name: str) -> None:
+    """Refuse phase offsets that are not finite, or too large to have a fraction.
+
+    Raises:
+        InputError: Says what was found under this name.
+    """
+    if not np.isfinite(cycles).all():
+        raise InputError(f"{name} has a value that is not finite")
+    largest = float(np.abs(cycles).max(initial=0.0))
+    if largest > _MOST_CYCLES:
+        raise InputError(f"{name} has the value {largest:g}; at most {_MOST_CYCLES:g} cycles")
+
+
+def read_bodies(
+    path: Path, materials: Mapping[int, PaletteMaterial]
+) -> list[tuple[str, NDArray[np.uint8], NDArray[np.float64]]]:
     """Return label, material and phase offsets (in cycles) of each body of a file.
+
+    Args:
+        path: An ``.npz`` file.
+        materials: What a cell may be made of.
 
     Raises:
         InputError: The file cannot be read, or its arrays are not bodies; says what is wrong.
@@ -45,7 +79,7 @@ def read_bodies(path: Path) -> list[tuple[str, NDArray[np.uint8], NDArray[np.flo
         with open_npz(path, ("material", "phase_cycles")) as (material, phase):
             _check_material(material)
             _check_phase(phase, material.shape)
-            codes, cycles = _codes(material.unpack()), _cycles(phase.unpack())
+            codes, cycles = _codes(material.unpack(), materials), _cycles(phase.unpack())
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
     except InputError as error:
@@ -59,8 +93,8 @@ def _check_material(material: PackedArray) -> None:
     shape = list(material.shape)
     if len(shape) not in (3, 4) or min(shape) < 1:
         raise InputError(f"material has the shape {shape}; expected [X, Y, Z] or [N, X, Y, Z]")
-    if math.prod(shape) > _MOST_CELLS:
-        raise InputError(f"material has the shape {shape}, {math.prod(shape)} cells; at most {_MOST_CELLS}")
+    if math.prod(shape) > MOST_CELLS:
+        raise InputError(f"material has the shape {shape}, {math.prod(shape)} cells; at most {MOST_CELLS}")
     if material.dtype.kind not in "ui":
         raise InputError(f"material has the type {material.dtype}; expected whole numbers")
 
@@ -72,10 +106,8 @@ def _check_phase(phase: PackedArray, shape: tuple[int, ...]) -> None:
         raise InputError(f"phase_cycles has the type {phase.dtype}; expected numbers")
 
 
-def _codes(material: NDArray[Any]) -> NDArray[np.uint8]:
-    wrong = material[~np.isin(material, (EMPTY, PASSIVE, CONTRACTILE))]
-    if wrong.size:
-        raise InputError(f"material has the code {wrong[0]}; codes: 0 empty, 1 passive, 3 contractile")
+def _codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]) -> NDArray[np.uint8]:
+    check_codes(material, materials)
     without = np.flatnonzero(~material.any(axis=(-3, -2, -1)))
     if without.size:
         raise InputError(f"material: body {without[0]} has no voxel")
@@ -85,9 +117,5 @@ def _codes(material: NDArray[Any]) -> NDArray[np.uint8]:
 def _cycles(phase: NDArray[Any]) -> NDArray[np.float64]:
     with np.errstate(all="ignore"):  # what double precision cannot hold becomes infinite
         cycles: NDArray[np.float64] = phase.astype(np.float64)
-    if not np.isfinite(cycles).all():
-        raise InputError("phase_cycles has a value that is not finite")
-    largest = float(np.abs(cycles).max())
-    if largest > _MOST_CYCLES:
-        raise InputError(f"phase_cycles has the value {largest:g}; at most {_MOST_CYCLES:g} cycles")
+    check_cycles(cycles, "phase_cycles")
     return cycles

@@ -1,13 +1,12 @@
-"""The simulator ``vox``: one end of a body is clamped, contractile voxels swing, the rest follows."""
+"""The simulator ``vox``: bodies of voxels, held or free, whose contractile voxels swing."""
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal, TypeVar
 
 import attrs
 import numpy as np
@@ -16,32 +15,44 @@ from numpy.typing import NDArray
 
 import evoframe_libvox as libvox
 from evoframe import (
-    CONTRACTILE,
     CONTROLLER,
     MORPHOLOGY,
-    PASSIVE,
     ConfigurationError,
     Design,
+    Export,
     InputError,
     Outcome,
     Record,
+    Variant,
 )
-from evoframe_simulators.bodies import check_design, read_bodies
-from evoframe_simulators.sampling import count_samples, sample_steps
+from evoframe_simulators.bodies import check_codes, check_design, read_bodies
+from evoframe_simulators.materials import PaletteMaterial, check_palette, materials_of
+from evoframe_simulators.models import amplitude_of, clocks_of, model_of, possible_clocks, without_number
+from evoframe_simulators.regions import FixedRegion
+from evoframe_simulators.sampling import check_samples
+from evoframe_simulators.tracks import FURTHER, POINTS, check_room, check_tracks, shape_of
+from evoframe_simulators.verification import variants
+from evoframe_simulators.vxa import VxaFile, left_out, read_vxa, write_vxa
 
 __all__ = ["Vox"]
 
 _POSITIVE = validators.gt(0.0)
 _NOT_NEGATIVE = validators.ge(0.0)
 
+R = TypeVar("R")
+
+
+def _within(least: float, most: float) -> list[Any]:
+    return [validators.ge(least), validators.le(most)]
+
 
 @attrs.frozen
 class Vox:
-    """Voxel actuators on libvox; the defaults are the paper's (paper.md, "The simulation of one pair").
+    """Voxels on libvox; the defaults are the paper's (paper.md, "The simulation of one pair").
 
-    The whole slab x = 0 of the canvas is clamped in all six degrees of freedom. The paper's friction and
-    collision damping need a floor and have no option here, since there is none. A design without any voxel
-    cannot be simulated and counts as diverged at step 0.
+    The whole slab x = 0 of the canvas is clamped in all six degrees of freedom, and there is neither gravity
+    nor floor. A design without any voxel cannot be simulated and counts as diverged at step 0. Beside its
+    points it records ``voxels``, ``energy``, ``strain`` and ``momentum``: see ``evoframe_simulators.tracks``.
 
     Attributes:
         duration: Simulated time, s.
@@ -50,21 +61,43 @@ class Vox:
         poisson_ratio: Of both materials.
         density: Of both materials, kg/m3.
         expansion_coefficient: Linear thermal expansion of a contractile voxel, 1/degree; 0 switches it off.
+        static_friction: Of both materials on the floor: share of its push up to which a resting voxel sticks.
+        dynamic_friction: Of both materials: share of a push that brakes a sliding voxel.
+        palette: If it has entries, they replace the two materials 1 (passive) and 3 (contractile): tables
+            with ``code``, the six values above, and perhaps ``name``.
         temperature_base: Degrees at which a voxel has its nominal size.
         temperature_amplitude: Highest temperature of the oscillation, degrees (the paper's engine counts from
             zero, so the swing is this less the base: 14.47 degrees, a linear strain of 0.1447).
         frequency: Of the contraction, Hz.
         phase_unit: How the controller's offsets are read. ``cycles`` is what the paper's engine does,
             ``radians`` what the paper says.
-        self_collision: Whether voxels that are no neighbours repel each other closer than 1.5 edges.
+        start_time: When the contraction begins, s; its clock runs from 0 all the same.
+        ramp: Seconds from then until it has its full amplitude.
+        gravity: Acceleration along z, m/s2; negative is down.
+        floor: Whether there is one, at z = 0.
+        floor_slope: Degrees; the floor is z = x tan(slope), but pushes vertically all the same.
+        fluid_drag: Half the density of the fluid around times its drag coefficient, kg/m3.
+        fixed: Boxes whose voxels are held: tables with ``origin`` and ``size``, fractions of the canvas, and
+            ``degrees_of_freedom``, a list out of x, y, z, rx, ry, rz. With none the body is free.
+        self_collision: Whether voxels that are no neighbours repel each other.
+        collision_envelope: How close they must come, in mean sizes: 1.5 in the paper's engine, 1 is touching.
         collision_horizon: How far candidates for contact are looked for, in voxel edges.
+        complete_contacts: Whether no contact is missed; the paper's engine may find some late.
+        contact_damping: Damping ratio of the push between voxels; the paper's engine has none.
+        contact_friction: Whether voxels that touch brake each other; not in the paper's engine.
         time_step_fraction: Of the largest stable time step.
+        substeps: Steps that each such step is made in; samples are taken at the same instants however many.
+        step_limit: A body that needs more steps is refused.
         bond_damping: Damping ratio of the bonds.
         slow_damping: Damping ratio against the ground.
+        collision_damping: Damping ratio of the floor's push.
+        largest_strain: A bond that is strained more makes the body count as diverged.
+        largest_distance: So does a voxel that is further from its start, in longest edges of the canvas.
     """
 
     requires: ClassVar[tuple[str, ...]] = (MORPHOLOGY, CONTROLLER)
-    tracks: ClassVar[tuple[libvox.Track, ...]] = ("tip", "face", "body")
+    tracks: ClassVar[tuple[libvox.Track, ...]] = POINTS
+    formats: ClassVar[tuple[str, ...]] = ("vxa",)
 
     duration: float = attrs.field(default=0.07, validator=_POSITIVE)
     voxel_size: float = attrs.field(default=0.05, validator=_POSITIVE)
@@ -72,44 +105,46 @@ class Vox:
     poisson_ratio: float = attrs.field(default=0.35, validator=[validators.ge(0.0), validators.lt(0.5)])
     density: float = attrs.field(default=1e6, validator=_POSITIVE)
     expansion_coefficient: float = 0.01
+    static_friction: float = attrs.field(default=1.0, validator=_NOT_NEGATIVE)
+    dynamic_friction: float = attrs.field(default=0.5, validator=_NOT_NEGATIVE)
+    palette: tuple[PaletteMaterial, ...] = attrs.field(default=(), validator=check_palette)
     temperature_base: float = 25.0
     temperature_amplitude: float = 39.4714242553
     frequency: float = attrs.field(default=4.0, validator=_POSITIVE)
     phase_unit: Literal["cycles", "radians"] = "cycles"
+    start_time: float = attrs.field(default=0.0, validator=_NOT_NEGATIVE)
+    ramp: float = attrs.field(default=0.0, validator=_NOT_NEGATIVE)
+    gravity: float = 0.0
+    floor: bool = False
+    floor_slope: float = attrs.field(default=0.0, validator=_within(-89.0, 89.0))
+    fluid_drag: float = attrs.field(default=0.0, validator=_NOT_NEGATIVE)
+    fixed: tuple[FixedRegion, ...] = (FixedRegion(),)
     self_collision: bool = True
-    collision_horizon: float = attrs.field(default=2.0, validator=_POSITIVE)
+    collision_envelope: float = attrs.field(default=1.5, validator=_within(1.0, 2.0))
+    collision_horizon: float = attrs.field(default=2.0, validator=_within(1.0, 4.0))
+    complete_contacts: bool = False
+    contact_damping: float = attrs.field(default=0.0, validator=_NOT_NEGATIVE)
+    contact_friction: bool = False
     time_step_fraction: float = attrs.field(default=0.9, validator=[validators.gt(0.0), validators.le(1.0)])
+    substeps: int = attrs.field(default=1, validator=_within(1, 1000))
+    step_limit: int = attrs.field(default=10_000_000, validator=_within(1, 2**53))
     bond_damping: float = attrs.field(default=1.0, validator=_NOT_NEGATIVE)
     slow_damping: float = attrs.field(default=0.01, validator=_NOT_NEGATIVE)
+    collision_damping: float = attrs.field(default=0.8, validator=_NOT_NEGATIVE)
+    largest_strain: float = attrs.field(default=100.0, validator=_POSITIVE)
+    largest_distance: float = attrs.field(default=100.0, validator=_POSITIVE)
 
     def __attrs_post_init__(self) -> None:
-        self._clocks()  # the solver has the last word on what it can do with these settings
-
-    def _clocks(self) -> list[tuple[float, int]]:
-        """Return the time step, s, and the number of steps of a body with bonds, and of one without."""
-        try:
-            time_steps, steps = _model(self, (2, 1, 1)).time_steps(_bar_and_lone_voxel())
-        except ValueError as error:
-            raise ValueError(_without_number(error)) from error
-        return list(zip(time_steps.tolist(), steps.tolist(), strict=True))
+        possible_clocks(self)  # the solver has the last word on what it can do with these settings
 
     def check(self, record: Record) -> None:
-        """Refuse a record with a track or a sample that there will not be.
+        """Refuse a record with a track or a sample that there will not be, or that ends too early.
 
         Raises:
             ConfigurationError: Says what there is.
         """
-        for track in record.tracks:
-            if track not in self.tracks:
-                raise ConfigurationError(f"vox has no track '{track}'; tracks: {', '.join(self.tracks)}")
-        if record.samples:
-            last = max(record.samples)
-            taken, steps = min((count_samples(*clock, record.every), clock[1]) for clock in self._clocks())
-            if last >= taken:
-                raise ConfigurationError(
-                    f"sample {last} of one every {record.every} s is never taken: vox makes "
-                    f"{steps} steps in simulator.duration = {self.duration} s, samples 0 to {taken - 1}"
-                )
+        check_tracks(record.tracks)
+        check_samples(record, possible_clocks(self), self.duration)
 
     def key(self, design: Design, record: Record) -> bytes:
         """Return a digest of the body, the offsets that act, and the record.
@@ -119,7 +154,7 @@ class Vox:
         """
         check_design(design)
         material, phase = design.roles[MORPHOLOGY], self._phase_cycles(design)
-        acting = phase[material == CONTRACTILE] if self.expansion_coefficient else phase[:0]
+        acting = phase[np.isin(material, self._acting_codes())]
         with np.errstate(over="ignore"):  # left to the solver to refuse
             single = acting.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
         digest = hashlib.blake2b(repr((material.shape, record)).encode(), digest_size=20)
@@ -131,7 +166,7 @@ class Vox:
         """Return the outcome of each design, in order.
 
         Raises:
-            InputError: A design is no body with a controller.
+            InputError: A design is no body with a controller, or its record would be too large.
         """
         for design in designs:
             check_design(design)
@@ -140,56 +175,135 @@ class Vox:
             try:
                 outcomes |= self._simulate(canvas, {index: designs[index] for index in indices}, record)
             except ValueError as error:  # the solver's words for what cells hold
-                raise InputError(_without_number(error)) from error
-        nothing = _nothing(record)
-        return [outcomes.get(index, nothing) for index in range(len(designs))]
+                raise InputError(without_number(error)) from error
+        return [
+            outcomes[index] if index in outcomes else _nothing(design, record)
+            for index, design in enumerate(designs)
+        ]
+
+    def variants(self, design: Design, record: Record) -> list[Variant]:
+        """Return what ``evoframe verify`` compares a design with (see ``evoframe_simulators.verification``).
+
+        Raises:
+            InputError: The design is no body with a controller.
+        """
+        check_design(design)
+        try:
+            return variants(self, design, record)
+        except ValueError as error:  # the solver's words for what cells hold
+            raise InputError(without_number(error)) from error
 
     def read(self, path: Path) -> list[tuple[str, Design]]:
-        """Return the bodies of an ``.npz`` file with their labels.
+        """Return the bodies of an ``.npz`` or ``.vxa`` file with their labels.
 
-        The file has ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``; codes 0, 1, 3) and ``phase_cycles`` of
-        the same shape.
+        An ``.npz`` file has ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``, codes of the palette) and
+        ``phase_cycles`` of the same shape. The offsets of a ``.vxa`` file are taken as they stand there, so
+        that ``phase_unit`` says how they are read.
 
         Raises:
             InputError: The file cannot be read, or is something else.
         """
+        materials = materials_of(self)
+        if path.suffix.lower() == ".vxa":
+            file = read_vxa(path)
+            _checked(path, check_codes, file.material, materials)
+            return [(path.name, Design({MORPHOLOGY: file.material, CONTROLLER: file.phase}))]
+        if path.suffix.lower() != ".npz":
+            raise InputError(f"{path}: vox reads .npz and .vxa files, and this is neither by its name")
         unit = 1.0 if self.phase_unit == "cycles" else math.tau
         return [
             (label, Design({MORPHOLOGY: material, CONTROLLER: phase_cycles * unit}))
-            for label, material, phase_cycles in read_bodies(path)
+            for label, material, phase_cycles in read_bodies(path, materials)
         ]
+
+    @classmethod
+    def settings_of(cls, path: Path) -> Mapping[str, Any] | None:
+        """Return all options as a ``.vxa`` file has them, as TOML values; ``None`` for other files.
+
+        Raises:
+            InputError: The file cannot be read, is no such file, or asks for what vox does not do; says what.
+        """
+        if path.suffix.lower() != ".vxa":
+            return None
+        vox = _checked(path, cls._as_in, read_vxa(path))
+        return attrs.asdict(vox, value_serializer=_listed)
+
+    def export(self, design: Design, format: str) -> Export:  # noqa: A002 - the protocol's word
+        """Return a design with these settings as a file of the format ``vxa``.
+
+        Raises:
+            ConfigurationError: There is no such format.
+            InputError: The design cannot be simulated, or has what the format cannot say.
+        """
+        if format not in self.formats:
+            raise ConfigurationError(f"vox does not write '{format}'; formats: {', '.join(self.formats)}")
+        check_design(design)
+        material, phase = design.roles[MORPHOLOGY], self._phase_cycles(design)
+        acting = np.isin(material, self._acting_codes())
+        check_codes(material, materials_of(self))
+        return Export(write_vxa(self, material, phase, acting), left_out(self))
 
     def provenance(self) -> dict[str, str]:
         """Return the kernel that computes."""
         return {"libvox kernel": libvox.KERNEL}
 
+    @classmethod
+    def _as_in(cls, file: VxaFile) -> Vox:
+        """Return the simulator that a file describes."""
+        if file.steps is None:
+            return cls(**file.options)
+        brief = cls(**file.options, duration=math.ulp(0.0))
+        [clock] = clocks_of(brief, model_of(brief, file.canvas), file.material[None])
+        return attrs.evolve(brief, duration=(file.steps - 0.5) * clock.time_step)
+
     def _phase_cycles(self, design: Design) -> NDArray[np.float64]:
         phase: NDArray[np.float64] = design.roles[CONTROLLER]
         return phase if self.phase_unit == "cycles" else phase / math.tau
 
+    def _acting_codes(self) -> list[int]:
+        """Return the codes of materials whose size the offsets change."""
+        if amplitude_of(self) == 0.0:
+            return []
+        return [code for code, material in materials_of(self).items() if material.expansion_coefficient]
+
     def _simulate(
         self, canvas: tuple[int, int, int], designs: dict[int, Design], record: Record
     ) -> dict[int, Outcome]:
-        """Simulate designs on one canvas together, as far as they share a time step."""
-        model = _model(self, canvas)
-        numbers = np.array(list(designs))
+        """Simulate designs on one canvas together, as far as they have the same number of samples."""
+        model = model_of(self, canvas)
+        numbers = list(designs)
         material = np.stack([design.roles[MORPHOLOGY] for design in designs.values()])
         phase = np.stack([self._phase_cycles(design) for design in designs.values()])
-        time_steps, steps = model.time_steps(material)
+        clocks = clocks_of(self, model, material)
+        samples = [clock.samples(record) for clock in clocks]
+        tracks = tuple(track for track in (*POINTS, *FURTHER) if track in record.tracks)
         outcomes: dict[int, Outcome] = {}
-        for time_step in np.unique(time_steps):
-            chosen = time_steps == time_step
-            samples = sample_steps(float(time_step), int(steps[chosen][0]), record)
-            tracks = tuple(track for track in self.tracks if track in record.tracks)
-            result = model.simulate(material[chosen], phase[chosen], samples, tracks)
-            for row, number in enumerate(numbers[chosen].tolist()):
-                outcomes[number] = Outcome(
-                    steps=samples,
-                    times=samples * time_step,
-                    tracks={name: track[row] for name, track in result.tracks.items()},
-                    diverged_at=int(result.diverged_step[row]) or None,
+        for count in {len(taken) for taken in samples}:
+            check_room(tracks, canvas, count)
+            chosen = [row for row, taken in enumerate(samples) if len(taken) == count]
+            steps = np.stack([samples[row] for row in chosen])
+            result = model.simulate(material[chosen], phase[chosen], steps, tracks)
+            for place, row in enumerate(chosen):
+                outcomes[numbers[row]] = Outcome(
+                    steps=samples[row],
+                    times=samples[row] * np.float64(clocks[row].time_step),
+                    tracks={name: track[place] for name, track in result.tracks.items()},
+                    diverged_at=int(result.diverged_step[place]) or None,
                 )
         return outcomes
+
+
+def _checked(path: Path, function: Callable[..., R], *arguments: Any) -> R:
+    """Call a function, and name the file in what it has to say against it."""
+    try:
+        return function(*arguments)
+    except (InputError, ValueError) as error:
+        raise InputError(f"{path}: {without_number(error)}") from error
+
+
+def _listed(_: Any, __: Any, value: Any) -> Any:
+    """Return a list for a tuple, as TOML has no other."""
+    return list(value) if isinstance(value, tuple) else value
 
 
 def _by_canvas(designs: Sequence[Design]) -> Iterator[tuple[tuple[int, int, int], list[int]]]:
@@ -203,37 +317,7 @@ def _by_canvas(designs: Sequence[Design]) -> Iterator[tuple[tuple[int, int, int]
     yield from groups.items()
 
 
-def _nothing(record: Record) -> Outcome:
-    none = np.zeros((0, 3))
-    return Outcome(np.zeros(0, np.int64), np.zeros(0), dict.fromkeys(record.tracks, none), diverged_at=0)
-
-
-def _without_number(error: ValueError) -> str:
-    """Return the solver's words without the number of the body, which nobody knows outside of its batch."""
-    return str(error).partition(" (body ")[0]
-
-
-def _bar_and_lone_voxel() -> NDArray[np.uint8]:
-    return np.array([[PASSIVE, PASSIVE], [0, PASSIVE]], np.uint8).reshape(2, 2, 1, 1)
-
-
-@functools.lru_cache(maxsize=16)
-def _model(vox: Vox, canvas: tuple[int, int, int]) -> libvox.Model:
-    """Return the model of a setting on a canvas; it is read-only, so threads share it."""
-    passive = libvox.Material(vox.youngs_modulus, vox.poisson_ratio, vox.density, 0.0)
-    contractile = attrs.evolve(passive, expansion=vox.expansion_coefficient)
-    clamped = np.zeros(canvas, bool)
-    clamped[0] = True
-    settings = libvox.Settings(
-        voxel_size=vox.voxel_size,
-        time_step_fraction=vox.time_step_fraction,
-        duration=vox.duration,
-        # The engine holds this in single precision (physics.md, section 1): without, 4e-11 m are lost.
-        temperature_amplitude=float(np.float32(vox.temperature_amplitude - vox.temperature_base)),
-        period=1 / vox.frequency,
-        bond_damping=vox.bond_damping,
-        slow_damping=vox.slow_damping,
-        self_collision=vox.self_collision,
-        collision_horizon=vox.collision_horizon,
-    )
-    return libvox.Model(canvas, {PASSIVE: passive, CONTRACTILE: contractile}, settings, clamped)
+def _nothing(design: Design, record: Record) -> Outcome:
+    canvas = design.roles[MORPHOLOGY].shape
+    tracks = {track: np.zeros((0, *shape_of(track, canvas))) for track in record.tracks}
+    return Outcome(np.zeros(0, np.int64), np.zeros(0), tracks, diverged_at=0)

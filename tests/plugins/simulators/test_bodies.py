@@ -17,9 +17,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evoframe import InputError
+from evoframe_simulators import Vox
 from evoframe_simulators.bodies import read_bodies
+from evoframe_simulators.materials import materials_of
 
 GOLDEN = Path(__file__).parents[2] / "data" / "paper_preset.npz"
+
+MATERIALS = materials_of(Vox())
 
 CELLS = (4, 2, 2)
 SOLID = np.ones(CELLS, np.uint8)
@@ -187,7 +191,11 @@ def renamed(before: bytes, after: bytes) -> Callable[[bytes], bytes]:
         pytest.param(
             bodies(material=SOLID * 1.0), "material has the type float64; expected whole numbers", id="floats"
         ),
-        pytest.param(bodies(material=SOLID * 2), "material has the code 2; codes: 0 empty", id="code 2"),
+        pytest.param(
+            bodies(material=SOLID * 2),
+            "material has the code 2; codes: 0 empty, 1 passive, 3 contractile$",
+            id="code 2",
+        ),
         pytest.param(
             bodies(material=SOLID + np.uint16(256)), "material has the code 257", id="a code beyond uint8"
         ),
@@ -242,7 +250,7 @@ def test_what_is_no_body_is_refused_by_name(tmp_path: Path, content: bytes, mess
     path = tmp_path / "given.npz"
     path.write_bytes(content)
     with pytest.raises(InputError, match=message) as caught:
-        read_bodies(path)
+        read_bodies(path, MATERIALS)
     assert str(caught.value).startswith(f"{path}: ")
 
 
@@ -250,7 +258,7 @@ def test_what_is_no_body_is_refused_by_name(tmp_path: Path, content: bytes, mess
 def test_what_is_no_file_is_refused_by_name(tmp_path: Path, make: Callable[[Path], None]) -> None:
     make(tmp_path / "given.npz")
     with pytest.raises(InputError, match=r"given\.npz: cannot be read: "):
-        read_bodies(tmp_path / "given.npz")
+        read_bodies(tmp_path / "given.npz", MATERIALS)
 
 
 @pytest.mark.parametrize("version", [(1, 0), (2, 0), (3, 0)])
@@ -265,7 +273,7 @@ def test_each_way_to_write_an_array_is_read(
     path.write_bytes(
         zipped(*((name + suffix, npy(array, version)) for name, array in members.items()), method=method)
     )
-    [(label, codes, cycles)] = read_bodies(path)
+    [(label, codes, cycles)] = read_bodies(path, MATERIALS)
     assert label == "given.npz"
     assert codes.dtype == np.uint8
     assert cycles.dtype == np.float64
@@ -276,7 +284,7 @@ def test_each_way_to_write_an_array_is_read(
 def test_several_bodies_are_numbered() -> None:
     with np.load(GOLDEN) as arrays:
         material, phase = arrays["material"], arrays["phase_cycles"]
-    read = read_bodies(GOLDEN)
+    read = read_bodies(GOLDEN, MATERIALS)
     assert [label for label, _, _ in read] == [f"paper_preset.npz[{n}]" for n in range(36)]
     assert (np.stack([codes for _, codes, _ in read]) == material).all()
     assert (np.stack([cycles for _, _, cycles in read]) == phase).all()
@@ -301,7 +309,7 @@ def damaged(content: bytes, flips: list[tuple[int, int]], length: int | None) ->
 
 def assert_bodies_or_refused(path: Path) -> None:
     try:
-        read = read_bodies(path)
+        read = read_bodies(path, MATERIALS)
     except InputError:
         return
     for _, codes, cycles in read:
