@@ -2,7 +2,7 @@
 #include "internal.h"
 
 static const double TWO_PI = 6.283185005187988; /* single precision */
-static const double SETTLING_TIME = 0.125; /* s, of the rounded edge before the actuation begins */
+static const double SETTLING = 0.5; /* share of the time until the start in which a size takes to the rounded edge */
 
 /* Share of the amplitude that is reached at a time after the start. */
 static double ramp_at(double time, const struct vox_settings *s)
@@ -16,7 +16,10 @@ static double size_at(double time, const struct voxel *voxel, const vox_model *m
 {
     const struct vox_settings *s = &model->settings;
     const double edge = s->voxel_size, amplitude = voxel->substance->strain_amplitude;
-    if (time < s->start_time) return edge * (1.0 + (model->rest_scale - 1.0) * fmin(1.0, time / SETTLING_TIME));
+    if (time < s->start_time) {
+        const double settled = fmin(1.0, time / (SETTLING * s->start_time));
+        return edge * (1.0 + settled * (model->rest_scale - 1.0));
+    }
     if (amplitude == 0.0) return edge * model->rest_scale;
     const double cycles = time / s->period + voxel->phase;
     const double size = edge * (model->rest_scale + ramp_at(time, s) * amplitude * sin(TWO_PI * cycles));

@@ -215,8 +215,9 @@ def _faults(error: BaseException, path: Path) -> Iterator[Fault]:
     elif isinstance(error, ForbiddenExtraKeysError):
         for key in sorted(error.extra_fields):
             yield Fault((*path, key), _unknown_key(key, error.cl))
-    elif isinstance(error, KeyError):
-        yield Fault((*path, str(error.args[0])), "is missing")
+    elif isinstance(error, KeyError):  # whose key may end the path already
+        key = str(error.args[0])
+        yield Fault(path if path[-1] == key else (*path, key), "is missing")
     else:
         yield Fault(path, _plain(str(error)))
 

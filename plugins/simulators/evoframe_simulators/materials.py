@@ -54,8 +54,8 @@ class PaletteMaterial:
     poisson_ratio: float = attrs.field(validator=[validators.ge(0.0), validators.lt(0.5)])
     density: float = attrs.field(validator=_POSITIVE)
     expansion_coefficient: float
-    static_friction: float = attrs.field(validator=_NOT_NEGATIVE)
-    dynamic_friction: float = attrs.field(validator=_NOT_NEGATIVE)
+    static_friction: float = attrs.field(default=1.0, validator=_NOT_NEGATIVE)
+    dynamic_friction: float = attrs.field(default=0.5, validator=_NOT_NEGATIVE)
     name: str = attrs.field(default="", validator=_check_name)
 
 
