@@ -42,6 +42,8 @@ POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "ev
 
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
+_LARGEST_FILE = 2**24  # bytes
+_DEEPEST = 32  # tables and lists within each other; no option needs a quarter of that
 
 
 @attrs.frozen
@@ -126,7 +128,7 @@ def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
 def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:
     """Return the layer of *source*, preceded by those that it extends."""
     origin, text, folder = _read(source, relative_to)
-    if origin in seen:
+    if any(_same_source(origin, other) for other in seen):
         raise ConfigurationError(f"{origin}: extends itself: {' -> '.join([*seen, origin])}")
     tree = _parsed(text, origin)
     tree.pop("provenance", None)  # what a run wrote about itself is no setting
@@ -138,11 +140,30 @@ def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]
     return [*_chain(base, folder, (*seen, origin)), Layer(origin, tree)]
 
 
+def _same_source(origin: str, other: str) -> bool:
+    """Return whether two names mean one preset or one file."""
+    if "preset '" in (origin[:8], other[:8]):
+        return origin == other
+    return Path(origin).resolve() == Path(other).resolve()
+
+
 def _parsed(text: str, origin: str) -> Tree:
     try:
-        return tomllib.loads(text)
+        tree = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
         raise ConfigurationError(f"{origin}: not valid TOML: {error}") from error
+    _refuse_depth(tree, origin)
+    return tree
+
+
+def _refuse_depth(tree: Tree, origin: str) -> None:
+    """Refuse what is nested more deeply than anything that walks through it can follow."""
+    level: list[Any] = [tree]
+    for _ in range(_DEEPEST):
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [item for values in inner for item in values if isinstance(item, dict | list)]
+    if level:
+        raise ConfigurationError(f"{origin}: tables and lists are nested more than {_DEEPEST} deep")
 
 
 def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
@@ -158,7 +179,7 @@ def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
             "a file needs the ending .toml"
         )
     try:
-        return str(path), path.read_text(encoding="utf-8"), path.parent
+        return str(path), _text(path), path.parent
     except OSError as error:
         raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -167,11 +188,23 @@ def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
         raise ConfigurationError(f"{str(path)!r}: cannot be read: {error}") from error
 
 
+def _text(path: Path) -> str:
+    with path.open("rb") as file:
+        content = file.read(_LARGEST_FILE + 1)
+    if len(content) > _LARGEST_FILE:
+        raise ConfigurationError(
+            f"{path}: is larger than {_LARGEST_FILE >> 20} MiB; that is no configuration"
+        )
+    return content.decode("utf-8")
+
+
 def _override(text: str) -> Layer:
     key, equals, value = text.partition("=")
     key = key.strip()
     if not equals or not _KEY.fullmatch(key):
         raise ConfigurationError(f"--set {text}: expected key=value, as in aggregator=hm or run.seed=2")
+    if key.count(".") >= _DEEPEST:
+        raise ConfigurationError(f"--set {text[:80]}...: tables are nested more than {_DEEPEST} deep")
     return layer_of(f"--set {text}", key, _value(text, value.strip()))
 
 

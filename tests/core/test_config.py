@@ -244,6 +244,34 @@ class TestFaults:
         with pytest.raises(ConfigurationError, match="extends itself"):
             load_config(tmp_path / "a.toml", plugins=toy_plugins)
 
+    def test_a_file_that_extends_itself_by_another_name_is_refused(
+        self, tmp_path: Path, toy_plugins: Plugins
+    ) -> None:
+        (tmp_path / "folder").mkdir()
+        (tmp_path / "a.toml").write_text('extends = "folder/../a.toml"')
+        with pytest.raises(ConfigurationError, match="extends itself"):
+            load_config(tmp_path / "a.toml", plugins=toy_plugins)
+
+    @pytest.mark.parametrize(
+        "text",
+        [f"[{'a.' * 3000}a]", f"{'a.' * 3000}a = 1", f"a = {'[' * 50}{']' * 50}", "a.b = [{c = [[]]}]"],
+    )
+    def test_only_deep_tables_and_lists_are_refused_for_their_depth(
+        self, toy_config: Load, toy_file: Path, text: str
+    ) -> None:
+        toy_file.write_text(text)
+        expected = "nested more than 32 deep" if len(text) > 30 else "unknown key"
+        with pytest.raises(ConfigurationError, match=expected):
+            toy_config()
+
+    def test_a_deep_key_is_refused(self, toy_config: Load) -> None:
+        with pytest.raises(ConfigurationError, match="nested more than 32 deep"):
+            toy_config(f"{'a.' * 3000}a=1")
+
+    def test_a_file_without_end_is_refused(self, toy_plugins: Plugins) -> None:
+        with pytest.raises(ConfigurationError, match="/dev/zero: is larger than 16 MiB"):
+            load_config("/dev/zero", plugins=toy_plugins)
+
     @pytest.mark.parametrize("text", ["aggregator", "=hm", "a b=1", "aggregator=[1", "run.seed=1\nrun.x=2"])
     def test_an_override_that_is_none_is_refused(self, toy_config: Load, text: str) -> None:
         with pytest.raises(ConfigurationError, match="--set"):
