@@ -93,7 +93,8 @@ def check_samples(record: Record, clocks: Sequence[Clock], duration: float) -> N
         if last >= taken:
             raise ConfigurationError(
                 f"sample {last} of one every {record.every} s is never taken: vox makes "
-                f"{steps} steps in simulator.duration = {duration} s, samples 0 to {taken - 1}"
+                f"{steps} steps in simulator.duration = {duration} s, samples 0 to {taken - 1}; simulate "
+                "longer, or set an objective that looks earlier or more often"
             )
     reached = min(clock.last(record) for clock in clocks)
     if reached < record.until * (1 - _ROUNDING):

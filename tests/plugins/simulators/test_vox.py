@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -202,7 +203,8 @@ def test_a_sample_after_the_end_is_refused_with_the_numbers() -> None:
         Vox(duration=0.03).check(PAPER)
     assert str(caught.value) == (
         "sample 5 of one every 0.01 s is never taken: "
-        "vox makes 10 steps in simulator.duration = 0.03 s, samples 0 to 2"
+        "vox makes 10 steps in simulator.duration = 0.03 s, samples 0 to 2; "
+        "simulate longer, or set an objective that looks earlier or more often"
     )
 
 
@@ -226,9 +228,9 @@ class TestBodyWithoutBonds:
     @pytest.mark.parametrize("vox", [vox, Vox()])
     @pytest.mark.parametrize("every", [0.0, 0.0032, 0.01, 1.0])
     def test_has_every_sample_that_is_accepted(self, vox: Vox, every: float) -> None:
-        with pytest.raises(ConfigurationError, match="samples 0 to ") as caught:
+        with pytest.raises(ConfigurationError) as caught:
             vox.check(Record(("tip",), every=every, samples=(10**9,)))
-        last = int(str(caught.value).rpartition(" ")[2])
+        [last] = map(int, re.findall(r"samples 0 to (\d+);", str(caught.value)))
         record = Record(("tip",), every=every, samples=(last,))
         vox.check(record)
         bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
