@@ -16,7 +16,7 @@ int64_t cell_beside(const vox_model *model, int64_t cell, enum axis axis, bool u
 }
 
 /* Index of the cell at the other end of a bond along +axis, or -1 if there is no bond: neighbours that are both
- * clamped have none. */
+ * held in all degrees of freedom have none. */
 static int64_t bonded_cell_after(const vox_model *model, const uint8_t *material, int64_t cell, enum axis axis)
 {
     const int64_t next = cell_beside(model, cell, axis, true);
@@ -29,7 +29,7 @@ static const struct substance *substance_at(const vox_model *model, uint8_t code
     return &model->substances[model->of_code[code]];
 }
 
-/* Section 3. A body without bonds has a shorter step: the square root of the edge is missing. */
+/* Section 3. A body without bonds has another step, as the engine does: the square root of the edge is missing. */
 static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond,
                                  double fastest_voxel)
 {

@@ -31,7 +31,7 @@ static struct vec x_to_axis(enum axis axis, struct vec v)
     return (struct vec){-v.z, v.y, v.x};
 }
 
-/* Rotation vector of a rotation. The engine's formulas: within 4 degrees the arc counts as its chord. */
+/* Rotation vector of a rotation. The engine's formulas: within 5.6 degrees the chord counts as the arc. */
 static struct vec rotation_vector(struct quat q)
 {
     const double w = q.w > 1.0 ? 1.0 : q.w;
@@ -210,7 +210,7 @@ static double spring_energy(const struct coupling *c, struct deformation d)
 struct tension bonds_tension(const struct body *body)
 {
     const int64_t n = body->census.n_bonds;
-    struct tension tension = {0.0, n > 0 ? INFINITY : 0.0, n > 0 ? -INFINITY : 0.0};
+    struct tension tension = {0.0, n > 0 ? HUGE_VAL : 0.0, n > 0 ? -HUGE_VAL : 0.0};
     for (int64_t i = 0; i < n; i++) {
         const struct bond *bond = &body->bonds[i];
         const struct pose pose = pose_of(bond, &body->voxels[bond->lower], &body->voxels[bond->upper]);

@@ -3,7 +3,7 @@
 
 #include "internal.h"
 
-static const int64_t CONTACTS_PER_VOXEL = 256;
+static const double CROWDING = 2.0; /* how much denser than the lattice voxels may lie while all contacts are listed */
 
 static int64_t least(int64_t a, int64_t b)
 {
@@ -101,6 +101,33 @@ static void place_skin(struct body *body)
     }
 }
 
+/* How far the fastest voxel may move before the list is made anew, m. */
+static double leeway(const struct vox_settings *s)
+{
+    return (s->collision_horizon - 1.0) / 2.0 * s->voxel_size;
+}
+
+/* The original engine lists nothing beyond, m. */
+static double engine_reach(const struct vox_settings *s)
+{
+    return s->collision_list_factor * s->collision_horizon * s->voxel_size;
+}
+
+/* Distance beyond which no pair is listed at any time. A complete list has all that can touch before the next one. */
+static double farthest_listed(const vox_model *model)
+{
+    const struct vox_settings *s = &model->settings;
+    if (s->complete_contacts) return s->collision_envelope * model->largest_size + 2.0 * leeway(s);
+    return fmin(engine_reach(s), s->collision_horizon * model->largest_size);
+}
+
+/* Most pairs that are listed for each voxel: half of the voxels of a sphere, a pair being listed once. */
+static int64_t pairs_per_voxel(const vox_model *model)
+{
+    const double radius = farthest_listed(model) / model->settings.voxel_size + 1.0;
+    return (int64_t)(CROWDING * 0.5 * 4.19 * radius * radius * radius);
+}
+
 enum vox_status contacts_create(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
@@ -108,7 +135,7 @@ enum vox_status contacts_create(struct body *body)
     const int64_t near_each = most_near(hops_left_out(&body->model->settings));
     contacts->longest = longest_axis(&body->model->settings);
     contacts->n_skin = n_skin;
-    contacts->capacity = least(n_skin * (n_skin - 1) / 2, CONTACTS_PER_VOXEL * n_skin);
+    contacts->capacity = least(n_skin * (n_skin - 1) / 2, pairs_per_voxel(body->model) * n_skin);
     contacts->skin = malloc((size_t)(n_skin + 1) * sizeof *contacts->skin);
     contacts->near = malloc((size_t)(n_skin * least(near_each, n_voxels) + 1) * sizeof *contacts->near);
     contacts->stamp = malloc((size_t)n_voxels * sizeof *contacts->stamp);
@@ -147,25 +174,17 @@ static double largest_current_size(const struct body *body)
     return largest;
 }
 
-/* How far the fastest voxel may move before the list is made anew, m. */
-static double leeway(const struct vox_settings *s)
-{
-    return (s->collision_horizon - 1.0) / 2.0 * s->voxel_size;
-}
-
-/* Distance beyond which no pair is listed. A complete list has all that can touch before the next one is made. */
+/* Distance beyond which no pair is listed now. */
 static double list_reach(const struct body *body)
 {
     const struct vox_settings *s = &body->model->settings;
-    if (s->complete_contacts) return s->collision_envelope * body->model->largest_size + 2.0 * leeway(s);
-    return s->collision_horizon * largest_current_size(body);
+    return s->complete_contacts ? farthest_listed(body->model) : s->collision_horizon * largest_current_size(body);
 }
 
 /* Whether the original engine lists two voxels: its reach is that of the first; voxels exactly at it are out. */
 static bool engine_lists(const struct voxel *first, double distance, const struct vox_settings *s)
 {
-    const double most = s->collision_list_factor * s->collision_horizon * s->voxel_size;
-    return distance < s->collision_horizon * first->size && distance < most;
+    return distance < s->collision_horizon * first->size && distance < engine_reach(s);
 }
 
 /* False if the list is full. */

@@ -16,6 +16,7 @@ static void place_corners(struct body *body)
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         for (int corner = 0; corner < 8; corner++) {
             const int32_t at = surface->corners_of[i][corner];
+            if (at < 0) continue;
             const struct vec own = vec_scale(surface->share[at], corner_of(&body->voxels[i], corner));
             surface->corners[at] = vec_add(surface->corners[at], own);
         }

@@ -10,6 +10,10 @@
 
 #include "vox.h"
 
+#if SIZE_MAX < 0xffffffffffffffffu
+#error "libvox computes the sizes of its arrays with 64 bits"
+#endif
+
 /* ---- vectors and quaternions ------------------------------------------------------------------------------ */
 
 struct vec {
@@ -142,7 +146,7 @@ struct voxel {
     struct vec position;     /* m */
     struct quat orientation; /* unit */
     double size;             /* m, of the step before */
-    struct vec force;        /* N, of bonds and contacts in this step */
+    struct vec force;        /* N, of bonds, contacts and fluid in this step */
     struct vec torque;       /* N m */
     struct vec momentum;     /* kg m/s */
     struct vec spin;         /* kg m2/s, angular momentum in the world frame */
@@ -150,6 +154,7 @@ struct voxel {
     double phase;            /* cycles */
     const struct substance *substance;
     int32_t cell;            /* index in the canvas */
+    int32_t touching;        /* voxels that it touches in this step, if they are damped or rub */
     uint8_t fixed;           /* degrees of freedom that it has not */
 };
 
@@ -201,7 +206,7 @@ struct facet {
 /* The outer surface of a body: where voxels meet, their corners are one. */
 struct surface {
     int64_t n_corners, n_facets;
-    int32_t (*corners_of)[8]; /* [n_voxels] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z */
+    int32_t (*corners_of)[8]; /* [n_voxels] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z; -1 within */
     double *share;            /* [n_corners] 1 / number of voxels that meet there */
     struct vec *corners;      /* [n_corners] m */
     struct facet *facets;

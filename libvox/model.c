@@ -6,12 +6,8 @@
 static const int64_t MOST_SUBSTEPS = 1000;
 static const double STEEPEST = 89.0; /* degrees */
 static const double LONGEST = 1e9;   /* s */
+static const double FARTHEST = 1e9;  /* edges */
 static const double RADIANS = 3.14159265358979323846 / 180.0;
-
-static bool positive(double x)
-{
-    return isfinite(x) && x > 0.0;
-}
 
 static bool not_negative(double x)
 {
@@ -65,14 +61,14 @@ static enum vox_status check_contacts(const struct vox_settings *s)
 
 static enum vox_status check_settings(const struct vox_settings *s)
 {
-    enum vox_status status;
     if (!canvas_fits(s)) return VOX_BAD_CANVAS;
     if (!within(1e-6, s->voxel_size, 1e6)) return VOX_BAD_VOXEL_SIZE;
-    if ((status = check_time(s)) != VOX_OK) return status;
-    if ((status = check_surroundings(s)) != VOX_OK) return status;
-    if ((status = check_contacts(s)) != VOX_OK) return status;
-    if (!positive(s->largest_strain)) return VOX_BAD_LARGEST_STRAIN;
-    if (!positive(s->largest_distance)) return VOX_BAD_LARGEST_DISTANCE;
+    enum vox_status status = check_time(s);
+    if (status == VOX_OK) status = check_surroundings(s);
+    if (status == VOX_OK) status = check_contacts(s);
+    if (status != VOX_OK) return status;
+    if (!(s->largest_strain > 0.0 && s->largest_strain <= FARTHEST)) return VOX_BAD_LARGEST_STRAIN;
+    if (!(s->largest_distance > 0.0 && s->largest_distance <= FARTHEST)) return VOX_BAD_LARGEST_DISTANCE;
     return VOX_OK;
 }
 
@@ -177,12 +173,17 @@ static double largest_size(const vox_model *model)
     return model->settings.voxel_size * fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
 }
 
+/* Of the canvas, in cells. */
+static double longest_edge(const struct vox_settings *s)
+{
+    return fmax((double)s->nx, fmax((double)s->ny, (double)s->nz));
+}
+
 static void derive_constants(vox_model *model, const struct vox_material *palette)
 {
     const struct vox_settings *s = &model->settings;
     model->rest_scale = (double)(float)s->voxel_size / s->voxel_size;
-    model->too_far = s->largest_distance * s->voxel_size * (double)(s->nx > s->ny ? (s->nx > s->nz ? s->nx : s->nz)
-                                                                                  : (s->ny > s->nz ? s->ny : s->nz));
+    model->too_far = s->largest_distance * s->voxel_size * longest_edge(s);
     model->floor_rise = tan(RADIANS * s->floor_slope);
     for (int32_t code = 0; code < VOX_MAX_CODES; code++)
         if (model->of_code[code] >= 0) model->substances[model->of_code[code]] = substance_of(&palette[code], s);

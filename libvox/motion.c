@@ -41,18 +41,27 @@ static struct quat turned(struct quat q, struct vec spin_rate, double dt)
 static void turn(struct voxel *voxel, double dt)
 {
     const struct substance *s = voxel->substance;
+    if (voxel->fixed & VOX_FIX_ROTATION_X) voxel->torque.x = 0.0;
+    if (voxel->fixed & VOX_FIX_ROTATION_Y) voxel->torque.y = 0.0;
+    if (voxel->fixed & VOX_FIX_ROTATION_Z) voxel->torque.z = 0.0;
     voxel->spin = vec_add(voxel->spin, vec_scale(dt, voxel->torque));
     voxel->spin = vec_scale(1.0 - s->slow_spin_rate * dt, voxel->spin);
     voxel->orientation = turned(voxel->orientation, vec_scale(1.0 / s->inertia, voxel->spin), dt);
 }
 
-/* A voxel keeps the coordinates that it is not free to change. Rotation is held about all axes or about none. */
+static void hold_coordinate(double *position, double *momentum, double start)
+{
+    *position = start;
+    *momentum = 0.0;
+}
+
+/* A voxel keeps the coordinates that it is not free to change, and its orientation if it may turn about no axis. */
 static void hold(struct voxel *voxel)
 {
     const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z;
-    if (voxel->fixed & VOX_FIX_X) voxel->position.x = voxel->start.x, voxel->momentum.x = 0.0;
-    if (voxel->fixed & VOX_FIX_Y) voxel->position.y = voxel->start.y, voxel->momentum.y = 0.0;
-    if (voxel->fixed & VOX_FIX_Z) voxel->position.z = voxel->start.z, voxel->momentum.z = 0.0;
+    if (voxel->fixed & VOX_FIX_X) hold_coordinate(&voxel->position.x, &voxel->momentum.x, voxel->start.x);
+    if (voxel->fixed & VOX_FIX_Y) hold_coordinate(&voxel->position.y, &voxel->momentum.y, voxel->start.y);
+    if (voxel->fixed & VOX_FIX_Z) hold_coordinate(&voxel->position.z, &voxel->momentum.z, voxel->start.z);
     if ((voxel->fixed & rotation) != rotation) return;
     voxel->orientation = (struct quat){1.0, 0.0, 0.0, 0.0};
     voxel->spin = (struct vec){0.0, 0.0, 0.0};

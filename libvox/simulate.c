@@ -3,10 +3,10 @@
 
 static const double MOST_CYCLES = 1e6;
 
-/* Whether a batch of so many bodies fits an array of so many doubles each. */
+/* Whether a batch fits the longest tracks: a sample of a body takes 24 bytes for each cell, or 48 in all. */
 static bool batch_fits(int64_t n_bodies, int64_t n_samples, int64_t cells)
 {
-    const int64_t most = (int64_t)(PTRDIFF_MAX / 64) / cells;
+    const int64_t most = (int64_t)(PTRDIFF_MAX / 48) / cells;
     return n_bodies >= 0 && n_samples >= 0 && n_bodies <= most && (n_bodies == 0 || n_samples <= most / n_bodies);
 }
 

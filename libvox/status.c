@@ -27,8 +27,8 @@ const char *vox_status_message(enum vox_status status)
     case VOX_BAD_COLLISION_ENVELOPE: return "collision_envelope must be between 1 and 2";
     case VOX_BAD_COLLISION_HORIZON: return "collision_horizon must be between 1 and 4";
     case VOX_BAD_COLLISION_LIST_FACTOR: return "collision_list_factor must be between 1 and 2";
-    case VOX_BAD_LARGEST_STRAIN: return "largest_strain must be positive and finite";
-    case VOX_BAD_LARGEST_DISTANCE: return "largest_distance must be positive and finite";
+    case VOX_BAD_LARGEST_STRAIN: return "largest_strain must be above 0 and at most 1e9";
+    case VOX_BAD_LARGEST_DISTANCE: return "largest_distance must be above 0 and at most 1e9";
     case VOX_BAD_PALETTE: return "the palette must give at least one material, with codes from 1 to 255";
     case VOX_BAD_YOUNGS_MODULUS: return "youngs_modulus must be between 1e-6 and 1e18 Pa";
     case VOX_BAD_POISSON_RATIO: return "poisson_ratio must be at least 0 and below 0.5";

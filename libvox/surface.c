@@ -116,18 +116,33 @@ static void find_facets(struct body *body, const bool *outside)
     }
 }
 
+/* Leaves only the corners that belong to a facet. */
+static void drop_inner_corners(struct body *body, bool *outer)
+{
+    struct surface *surface = &body->surface;
+    for (int64_t i = 0; i < surface->n_corners; i++) outer[i] = false;
+    for (int64_t i = 0; i < surface->n_facets; i++)
+        for (int corner = 0; corner < 4; corner++) outer[surface->facets[i].corners[corner]] = true;
+    for (int64_t i = 0; i < body->census.n_voxels; i++)
+        for (int corner = 0; corner < 8; corner++)
+            if (!outer[surface->corners_of[i][corner]]) surface->corners_of[i][corner] = -1;
+}
+
 static enum vox_status place_facets(struct body *body)
 {
     const size_t cells = (size_t)body->model->cells;
     bool *outside = malloc(cells * sizeof *outside);
     int32_t *queue = malloc(cells * sizeof *queue);
-    const bool enough = outside && queue;
+    bool *outer = malloc((size_t)body->surface.n_corners * sizeof *outer);
+    const bool enough = outside && queue && outer;
     if (enough) {
         flood(body, outside, queue);
         find_facets(body, outside);
+        drop_inner_corners(body, outer);
     }
     free(outside);
     free(queue);
+    free(outer);
     return enough ? VOX_OK : VOX_NO_MEMORY;
 }
 

@@ -21,7 +21,7 @@ KERNEL: Final = "scalar"
 
 FIX_ALL: Final = 63
 """All six degrees of freedom of a voxel: the bits 1, 2, 4 for its position along x, y, z and 8, 16, 32 for its
-rotation about them, which is held only if all three of its bits are set."""
+rotation about them."""
 
 Track = Literal["tip", "face", "body", "voxels", "energy", "strain", "momentum"]
 
@@ -76,7 +76,7 @@ class Settings:
         slow_damping: Damping of all motion against the ground, as a fraction of critical.
         floor_damping: Damping of the floor's push, as a fraction of critical.
         contact_damping: Damping of the push between voxels that touch, as a fraction of critical; the original
-            engine has none.
+            engine has none. It never does more than end the approach within one step.
         self_collision: Whether the voxels of a body repel each other.
         contact_friction: Whether they brake each other too, with the mean of their dynamic frictions; the
             original engine does not.
@@ -142,7 +142,7 @@ class Result:
 
 
 class Model:
-    """A canvas with its materials, settings and clamped cells; read-only once made.
+    """A canvas with its materials, settings and fixed cells; read-only once made.
 
     Args:
         canvas: Cells along x, y and z.
@@ -190,7 +190,8 @@ class Model:
             ``float64[N]`` in s, and ``int64[N]``.
 
         Raises:
-            ValueError: A body is empty or has an unknown material, or the array has the wrong shape or type.
+            ValueError: A body is empty, has an unknown material or no usable time step, or needs too many
+                steps; or the array has the wrong shape or type.
         """
         cells = _cells("material", material, np.uint8, (-1, *self.canvas))
         n = len(cells)
@@ -283,11 +284,9 @@ class Model:
     def _track_shapes(self, n: int, samples: int) -> dict[Track, tuple[int, ...]]:
         """Return the shapes in which the solver writes."""
         point, two = (n, samples, 3), (n, samples, 2)
-        return {
-            **{"tip": point, "face": point, "body": point},
-            **{"voxels": (n, samples, *self.canvas[::-1], 3)},
-            **{"energy": two, "strain": two, "momentum": (n, samples, 6)},
-        }
+        voxels = (n, samples, *self.canvas[::-1], 3)
+        points: dict[Track, tuple[int, ...]] = {"tip": point, "face": point, "body": point, "voxels": voxels}
+        return points | {"energy": two, "strain": two, "momentum": (n, samples, 6)}
 
     def _model_error(self, status: int, culprit: int) -> Exception:
         """Return the error for a model that could not be made, with the value that was given."""
@@ -329,7 +328,7 @@ def _array(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[i
     """Return an array of a type, if that holds all its values exactly, and of a shape (-1: any length)."""
     array = np.asarray(values)
     wanted = np.dtype(dtype)
-    if array.size and not np.can_cast(array.dtype, wanted):
+    if array.size and (array.dtype == np.bool_ or not np.can_cast(array.dtype, wanted)):
         raise ValueError(f"{name} must be {wanted}, got {array.dtype}")
     fits = len(shape) == array.ndim and all(w in (-1, n) for w, n in zip(shape, array.shape, strict=True))
     if not fits:
@@ -341,7 +340,7 @@ def _array(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[i
 def _cells(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[int, ...]) -> NDArray[Any]:
     """Return an array over cells in the solver's order: x fastest, then y, then z."""
     array = _array(name, values, dtype, shape)
-    return np.ascontiguousarray(array.swapaxes(-1, -3))
+    return np.array(array.swapaxes(-1, -3), order="C")  # a copy, which nobody changes after it was checked
 
 
 def _error(status: int, detail: str) -> Exception:

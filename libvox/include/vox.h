@@ -1,6 +1,6 @@
 /* vox: a soft-body solver for voxels on a lattice.
  *
- * A model (canvas, settings, materials, clamped cells) is created once and is read-only afterwards, so any number
+ * A model (canvas, settings, materials, fixed cells) is created once and is read-only afterwards, so any number
  * of threads may use one at the same time. A call takes a batch of bodies and writes into the caller's buffers.
  * Nothing is printed, no state is global, and no input is trusted: every call checks its arguments before it
  * simulates anything and says what is wrong with a status.
@@ -71,7 +71,8 @@ enum vox_status {
     VOX_SAMPLE_OUT_OF_RANGE
 };
 
-/* Degrees of freedom of a voxel that are held, as bits. Rotation is held only if all three of its bits are set. */
+/* Degrees of freedom of a voxel that are held, as bits: coordinates, and rotations about the axes of the world, which
+ * nothing then sets going. */
 enum {
     VOX_FIX_X = 1,
     VOX_FIX_Y = 2,
@@ -104,7 +105,7 @@ struct vox_settings {
     double bond_damping;
     double slow_damping;           /* against the ground, of all motion */
     double floor_damping;
-    double contact_damping;        /* of voxels that touch */
+    double contact_damping;        /* of voxels that touch, as far as a step can bear it */
     /* contact between voxels */
     int32_t self_collision;        /* 0: bodies pass through themselves */
     int32_t contact_friction;      /* 0: without; else with the mean of both dynamic frictions */
@@ -116,8 +117,8 @@ struct vox_settings {
     double collision_list_factor;  /* the list leaves out voxels within floor(factor * horizon) bonds of each other,
                                       and the original engine's what is beyond factor * horizon edges; 1 .. 2 */
     /* what counts as diverged */
-    double largest_strain;         /* of a bond, either way; > 0 */
-    double largest_distance;       /* of a voxel from where it started, in longest edges of the canvas; > 0 */
+    double largest_strain;         /* of a bond, either way; 0 < . <= 1e9 */
+    double largest_distance;       /* of a voxel from its start, in longest edges of the canvas; 0 < . <= 1e9 */
 };
 
 /* One entry of a palette. The index in the palette is the material code; code 0 is an empty cell. */
@@ -164,13 +165,15 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
 /* Simulate a batch to the end of the duration.
  *
  * material      [n_bodies][cells] material codes
- * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, at most 1e6 either way; read only
- *               where the material expands
+ * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, at most 1e6 either way; of no matter
+ *               where the material does not expand
  * sample_steps  [n_bodies][n_samples] strictly ascending for each body; 0 is the initial state, k the state after k
  *               steps; at most the number of its steps
- * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a strain or a distance beyond the
- *               settings, a NaN, or more possible contacts than min(m(m-1)/2, 256 m) for m surface voxels. Such a
- *               body stops; the others do not notice.
+ * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a NaN, or a distance beyond the
+ *               settings that the step led to; a strain beyond the settings, or twice as many possible contacts as
+ *               a lattice without gaps has, that the step began with. Such a body stops; the others do not notice.
+ *
+ * What is refused leaves all buffers as they were, except that memory may run out in the middle of a batch.
  *
  * The results of a body depend on nothing else in the batch, nor on which samples and tracks are asked for.
  */

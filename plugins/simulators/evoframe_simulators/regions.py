@@ -36,7 +36,7 @@ class FixedRegion:
         origin: The box's corner with the least coordinates, as fractions of the canvas.
         size: Its edges, as fractions of the canvas. The default is the slab x = 0.
         degrees_of_freedom: Which of them the voxels lose: ``x``, ``y``, ``z``, and ``rx``, ``ry``, ``rz`` for
-            the rotations, which are only held all three together.
+            the rotations about the axes of the world.
     """
 
     origin: tuple[float, float, float] = attrs.field(default=(0.0, 0.0, 0.0), validator=_check_finite)
