@@ -216,7 +216,10 @@ class TestFile:
         cycles = body().with_role("controller", body().roles["controller"] / math.tau)
         assert Vox(phase_unit="radians").export(body(), "vxa") == Vox().export(cycles, "vxa")
 
-    @pytest.mark.parametrize("name", ["", "  ", "<&>", "größer", "\N{SNOWMAN}"])
+    @pytest.mark.parametrize(
+        "name",
+        ["", "  ", "<&>", "größer", "\N{LATIN CAPITAL LETTER A WITH TILDE}\N{COPYRIGHT SIGN}", "\N{SNOWMAN}"],
+    )
     def test_names_are_kept_as_far_as_there_is_one(self, name: str, tmp_path: Path) -> None:
         material = attrs.evolve(_soft(1), name=name)
         path = tmp_path / "a.vxa"

@@ -80,7 +80,7 @@ def write_vxa(
     ]
     head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
     text = "\n".join([head, *_node("VXA", lines, Version="1.0"), ""])
-    return text.encode("iso-8859-1", errors="xmlcharrefreplace")
+    return text.encode("ascii", errors="xmlcharrefreplace")  # which every reader takes for the same
 
 
 def _node(tag: str, content: _Node, **attributes: str) -> Iterator[str]:
