@@ -1,15 +1,15 @@
 """What the tests of the solver share: the paper's setting, small models, a way to say what was measured."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from evoframe_libvox import Material, Model, Settings
+from evoframe_libvox import FIX_ALL, Material, Model, Settings, Track
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -37,20 +37,41 @@ PALETTE = {1: material(), 3: material(expansion=0.01)}
 def small_model(
     canvas: tuple[int, int, int],
     palette: dict[int, Material] | None = None,
-    clamped: NDArray[np.bool_] | None = None,
+    fixed: ArrayLike | None = None,
     **changes: Any,
 ) -> Model:
-    """Return a model that clamps nothing unless told."""
-    held = np.zeros(canvas, bool) if clamped is None else clamped
+    """Return a model that fixes nothing unless told."""
+    held = np.zeros(canvas, np.uint8) if fixed is None else np.asarray(fixed, np.uint8).reshape(canvas)
     return Model(canvas, palette or PALETTE, small_settings(**changes), held)
 
 
-@pytest.fixture(name="small_settings")
+def follow(
+    model: Model,
+    body: ArrayLike = 1,
+    phase: ArrayLike = 0.0,
+    steps: Iterable[int] | None = None,
+    tracks: Iterable[Track] = get_args(Track),
+) -> Arrays:
+    """Return the tracks of one body, which must not diverge, after every step or after given ones.
+
+    One material or one phase stands for all cells; arrays are taken in the order of ``[X, Y, Z]``.
+    """
+    cells, phases = (
+        np.broadcast_to(a, model.canvas) if np.ndim(a) == 0 else np.reshape(a, model.canvas)
+        for a in (np.asarray(body, np.uint8), np.asarray(phase, np.float64))
+    )
+    wanted = range(int(model.time_steps(cells[None])[1][0]) + 1) if steps is None else steps
+    result = model.simulate(cells[None], phases[None], list(wanted), tracks)
+    assert result.diverged_step.tolist() == [0]
+    return {name: track[0] for name, track in result.tracks.items()}
+
+
+@pytest.fixture(name="small_settings", scope="session")
 def _small_settings() -> Callable[..., Settings]:
     return small_settings
 
 
-@pytest.fixture(name="material")
+@pytest.fixture(name="material", scope="session")
 def _material() -> Callable[..., Material]:
     return material
 
@@ -60,9 +81,14 @@ def _palette() -> dict[int, Material]:
     return dict(PALETTE)
 
 
-@pytest.fixture(name="small_model")
+@pytest.fixture(name="small_model", scope="session")
 def _small_model() -> Callable[..., Model]:
     return small_model
+
+
+@pytest.fixture(name="follow", scope="session")
+def _follow() -> Callable[..., Arrays]:
+    return follow
 
 
 @pytest.fixture(scope="session")
@@ -83,8 +109,8 @@ def paper_model() -> Callable[..., Model]:
 
     def make(expansion: float = 0.01, **changes: Any) -> Model:
         canvas = (20, 8, 8)
-        held = np.zeros(canvas, bool)
-        held[0] = True
+        held = np.zeros(canvas, np.uint8)
+        held[0] = FIX_ALL
         settings = small_settings(duration=0.07, temperature_amplitude=39.4714242553 - 25.0, **changes)
         return Model(canvas, {1: material(), 3: material(expansion=expansion)}, settings, held)
 

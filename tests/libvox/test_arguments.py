@@ -1,13 +1,15 @@
 """What the solver refuses, and in which words."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 
 import evoframe_libvox
-from evoframe_libvox import Model
+from evoframe_libvox import Material, Model, Settings
 
 ModelMaker = Callable[..., Model]
 CANVAS = (2, 1, 2)
@@ -18,48 +20,91 @@ def one_body(code: int = 1) -> tuple[Any, Any]:
     return np.full((1, *CANVAS), code, np.uint8), np.zeros((1, *CANVAS))
 
 
-@pytest.mark.parametrize(
-    ("field", "values", "words"),
-    [
-        ("voxel_size", [0.0, -0.05, NAN, INF, 1e-7], "between 1e-6 and 1e6 m"),
-        ("time_step_fraction", [0.0, -0.9, 1.0001, NAN], "above 0 and at most 1"),
-        ("duration", [0.0, -1.0, NAN, INF], "positive"),
-        ("temperature_amplitude", [NAN, INF, -INF], "finite"),
-        ("period", [0.0, -0.25, NAN, INF], "positive"),
-        ("bond_damping", [-1e-9, NAN, INF], "not negative"),
-        ("slow_damping", [-1e-9, NAN, INF], "not negative"),
-        ("collision_horizon", [0.99, 4.01, NAN], "between 1 and 4"),
-        ("collision_list_factor", [0.99, 2.01, NAN], "between 1 and 2"),
-    ],
-)
-def test_settings_out_of_range(small_model: ModelMaker, field: str, values: list[float], words: str) -> None:
+NOT_NEGATIVE = ([-1e-9, NAN, INF, -INF], "finite and not negative")
+SETTINGS: dict[str, tuple[list[float], str]] = {
+    "voxel_size": ([0.0, -0.05, NAN, INF, 9e-7, 1.1e6], "between 1e-6 and 1e6 m"),
+    "time_step_fraction": ([0.0, -0.9, 1.0001, NAN], "above 0 and at most 1"),
+    "substeps": ([0, -1, 1001, 2**62], "between 1 and 1000"),
+    "step_limit": ([0, -1, -(2**62)], "at least 1"),
+    "duration": ([0.0, -1.0, NAN, INF, 1.1e9], "above 0 and at most 1e9 s"),
+    "temperature_amplitude": ([NAN, INF, -INF], "finite"),
+    "period": ([0.0, -0.25, NAN, INF, 9e-10, 1.1e9], "between 1e-9 and 1e9 s"),
+    "start_time": ([-1e-9, NAN, INF, 1.1e9], "between 0 and 1e9 s"),
+    "ramp": ([-1e-9, NAN, INF, 1.1e9], "between 0 and 1e9 s"),
+    "gravity": ([NAN, INF, -INF], "finite"),
+    "floor_slope": ([-89.1, 89.1, 90.0, NAN, INF], "between -89 and 89 degrees"),
+    "fluid_drag": NOT_NEGATIVE,
+    "bond_damping": NOT_NEGATIVE,
+    "slow_damping": NOT_NEGATIVE,
+    "floor_damping": NOT_NEGATIVE,
+    "contact_damping": NOT_NEGATIVE,
+    "collision_envelope": ([0.99, 2.01, NAN, INF], "between 1 and 2"),
+    "collision_horizon": ([0.99, 4.01, NAN], "between 1 and 4"),
+    "collision_list_factor": ([0.99, 2.01, NAN], "between 1 and 2"),
+    "largest_strain": ([0.0, -1.0, NAN, INF, 1.1e9], "above 0 and at most 1e9"),
+    "largest_distance": ([0.0, -1.0, NAN, INF, 1.1e9], "above 0 and at most 1e9"),
+}
+MATERIALS: dict[str, tuple[list[float], str]] = {
+    "youngs_modulus": ([0.0, -1.0, NAN, INF, 9e-7, 1.1e18], "between 1e-6 and 1e18 Pa"),
+    "poisson_ratio": ([-0.01, 0.5, NAN], "at least 0 and below 0.5"),
+    "density": ([0.0, -1.0, NAN, INF, 9e-7, 1.1e18], "between 1e-6 and 1e18 kg/m3"),
+    "expansion": ([NAN, INF, 1e308], "finite"),
+    "static_friction": NOT_NEGATIVE,
+    "dynamic_friction": NOT_NEGATIVE,
+}
+EXTREMES: dict[str, list[float]] = {
+    "voxel_size": [1e-6, 1e6],
+    "time_step_fraction": [1e-300, 1.0],
+    "substeps": [1, 1000],
+    "step_limit": [1, 2**63 - 1],
+    "duration": [1e-300, 1e9],
+    "period": [1e-9, 1e9],
+    "start_time": [0.0, 1e9],
+    "ramp": [0.0, 1e9],
+    "floor_slope": [-89.0, 89.0],
+    "collision_envelope": [1.0, 2.0],
+    "collision_horizon": [1.0, 4.0],
+    "collision_list_factor": [1.0, 2.0],
+    "largest_strain": [1e-300, 1e9],
+    "largest_distance": [1e-300, 1e9],
+}
+
+
+def test_every_setting_and_property_has_its_range_tested() -> None:
+    switches = {"floor", "self_collision", "contact_friction", "complete_contacts"}
+    assert {field.name for field in attrs.fields(Settings)} == SETTINGS.keys() | switches
+    assert {field.name for field in attrs.fields(Material)} == MATERIALS.keys()
+
+
+@pytest.mark.parametrize("field", SETTINGS)
+def test_settings_out_of_range(small_model: ModelMaker, field: str) -> None:
+    values, words = SETTINGS[field]
     for value in values:
-        with pytest.raises(ValueError, match=rf"^{field} must be .*{words}.*, got {value}$"):
+        with pytest.raises(ValueError, match=rf"^{field} must be .*{re.escape(words)}.*, got {value}$"):
             small_model(CANVAS, **{field: value})
 
 
-@pytest.mark.parametrize(
-    ("field", "values", "words"),
-    [
-        ("youngs_modulus", [0.0, -1.0, NAN, INF], "positive and finite"),
-        ("poisson_ratio", [-0.01, 0.5, NAN], "at least 0 and below 0.5"),
-        ("density", [0.0, -1.0, NAN, INF], "positive and finite"),
-        ("expansion", [NAN, INF, 1e308], "finite"),
-    ],
-)
-def test_materials_out_of_range(
-    small_model: ModelMaker, material: Callable[..., object], field: str, values: list[float], words: str
-) -> None:
+@pytest.mark.parametrize("field", EXTREMES)
+def test_settings_at_the_ends_of_their_range(small_model: ModelMaker, field: str) -> None:
+    for value in EXTREMES[field]:
+        assert getattr(small_model(CANVAS, **{field: value}).settings, field) == value
+
+
+@pytest.mark.parametrize("field", MATERIALS)
+def test_materials_out_of_range(small_model: ModelMaker, material: Callable[..., object], field: str) -> None:
+    values, words = MATERIALS[field]
     for value in values:
-        message = rf"^{field}.* must be .*{words}.*, got {value} for material 9$".replace("+", r"\+")
-        with pytest.raises(ValueError, match=message):
+        said = rf"^{field}.* must be .*{re.escape(words)}.*, got {re.escape(str(value))} for material 9$"
+        with pytest.raises(ValueError, match=said):
             small_model(CANVAS, palette={1: material(), 9: material(**{field: value})})
 
 
 @pytest.mark.parametrize("canvas", [(0, 1, 1), (1, -1, 1), (1, 1, 0)])
-def test_canvas_without_cells(small_model: ModelMaker, canvas: tuple[int, int, int]) -> None:
+def test_canvas_without_cells(
+    small_settings: Callable[..., Settings], palette: dict[int, Material], canvas: tuple[int, int, int]
+) -> None:
     with pytest.raises(ValueError, match="at least 1 cell along each axis"):
-        small_model(canvas, clamped=np.zeros(tuple(max(n, 0) for n in canvas), bool))
+        Model(canvas, palette, small_settings(), np.zeros(tuple(max(n, 0) for n in canvas), np.uint8))
 
 
 def test_canvas_too_large(small_model: ModelMaker) -> None:
@@ -77,14 +122,24 @@ def test_palette_codes_out_of_range(
 
 def test_empty_palette(small_settings: Callable[..., Any]) -> None:
     with pytest.raises(ValueError, match="at least one material"):
-        Model(CANVAS, {}, small_settings(), np.zeros(CANVAS, bool))
+        Model(CANVAS, {}, small_settings(), np.zeros(CANVAS, np.uint8))
 
 
-def test_clamped_must_be_a_mask(small_settings: Callable[..., Any], palette: dict[int, Any]) -> None:
-    with pytest.raises(ValueError, match=r"clamped must have the shape \[2, 1, 2\], got \[2, 1\]"):
-        Model(CANVAS, palette, small_settings(), np.zeros((2, 1), bool))
-    with pytest.raises(ValueError, match="clamped must be bool, got float64"):
-        Model(CANVAS, palette, small_settings(), np.zeros(CANVAS))
+def test_fixed_must_be_a_mask(small_settings: Callable[..., Any], palette: dict[int, Any]) -> None:
+    with pytest.raises(ValueError, match=r"fixed must have the shape \[2, 1, 2\], got \[2, 1\]"):
+        Model(CANVAS, palette, small_settings(), np.zeros((2, 1), np.uint8))
+    for dtype in (np.float64, np.int64, np.bool_):
+        with pytest.raises(ValueError, match=f"fixed must be uint8, got {np.dtype(dtype)}"):
+            Model(CANVAS, palette, small_settings(), np.zeros(CANVAS, dtype))
+
+
+@pytest.mark.parametrize("mask", [64, 128, 255])
+def test_fixed_has_six_bits(small_settings: Callable[..., Any], palette: dict[int, Any], mask: int) -> None:
+    fixed = np.zeros(CANVAS, np.uint8)
+    fixed[0, 0, 1] = mask
+    said = r"^fixed must be at most 63, .* \(cell 2 in the order x fastest, then y, then z\)$"
+    with pytest.raises(ValueError, match=said):
+        Model(CANVAS, palette, small_settings(), fixed)
 
 
 def test_unknown_material_names_the_body(small_model: ModelMaker) -> None:
@@ -117,6 +172,15 @@ def test_samples_out_of_order(small_model: ModelMaker, steps: list[int]) -> None
         small_model(CANVAS).simulate(*one_body(), steps)
 
 
+def test_samples_of_each_body_are_checked(small_model: ModelMaker) -> None:
+    material, phase = (np.repeat(a, 3, axis=0) for a in one_body())
+    model = small_model(CANVAS)
+    with pytest.raises(ValueError, match=r"strictly ascending and not negative \(body 1\)"):
+        model.simulate(material, phase, np.array([[0, 1], [1, 1], [0, 1]]))
+    with pytest.raises(ValueError, match=r"beyond the end of the simulation \(body 2\)"):
+        model.simulate(material, phase, np.array([[0, 1], [0, 2], [0, 999]]))
+
+
 def test_samples_end_with_the_simulation(small_model: ModelMaker) -> None:
     model = small_model(CANVAS)
     last = int(model.time_steps(one_body()[0])[1][0])
@@ -126,9 +190,9 @@ def test_samples_end_with_the_simulation(small_model: ModelMaker) -> None:
 
 
 def test_time_step_must_be_usable(small_model: ModelMaker, material: Callable[..., object]) -> None:
-    endless = small_model(CANVAS, duration=1e300)
-    heavy = small_model(CANVAS, palette={1: material(density=1e308, youngs_modulus=1e-308)})
-    for model in (endless, heavy):
+    endless = small_model(CANVAS, time_step_fraction=1e-300)
+    long = small_model(CANVAS, duration=1e9, palette={1: material(density=1e-6, youngs_modulus=1e18)})
+    for model in (endless, long):
         with pytest.raises(ValueError, match=r"no usable time step .* \(body 0\)"):
             model.simulate(*one_body(), [])
 
@@ -149,14 +213,16 @@ def test_shapes_must_fit(small_model: ModelMaker) -> None:
         ValueError, match=r"phase_cycles must have the shape \[1, 2, 1, 2\], got \[2, 2, 1, 2\]"
     ):
         model.simulate(material, np.repeat(phase, 2, axis=0), [0])
-    with pytest.raises(ValueError, match=r"sample_steps must have the shape \[N\], got \[1, 1\]"):
-        model.simulate(material, phase, np.zeros((1, 1), np.int64))
+    with pytest.raises(ValueError, match=r"sample_steps must have the shape \[1, N\], got \[2, 1\]"):
+        model.simulate(material, phase, np.zeros((2, 1), np.int64))
+    with pytest.raises(ValueError, match=r"sample_steps must have the shape \[N\], got \[1, 1, 1\]"):
+        model.simulate(material, phase, np.zeros((1, 1, 1), np.int64))
     with pytest.raises(ValueError, match="sample_steps must be int64, got float64"):
         model.simulate(material, phase, [0.0])  # type: ignore[list-item]  # the mistake under test
 
 
 def test_unknown_track(small_model: ModelMaker) -> None:
-    with pytest.raises(ValueError, match="unknown tracks elbow, knee; there are tip, face, body, voxels"):
+    with pytest.raises(ValueError, match="unknown tracks elbow, knee; there are tip, face, body, voxels, "):
         small_model(CANVAS).simulate(*one_body(), [0], ["knee", "elbow"])  # type: ignore[list-item]  # the mistake under test
 
 
@@ -173,3 +239,10 @@ def test_arrays_may_have_any_layout(small_model: ModelMaker) -> None:
 def test_public_names() -> None:
     assert evoframe_libvox.KERNEL == "scalar"
     assert all(hasattr(evoframe_libvox, name) for name in evoframe_libvox.__all__)
+
+
+def test_a_mask_of_truths_is_no_mask_of_bits(
+    small_settings: Callable[..., Any], palette: dict[int, Any]
+) -> None:
+    with pytest.raises(ValueError, match="fixed must be uint8, got bool"):
+        Model(CANVAS, palette, small_settings(), np.zeros(CANVAS, bool))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evoframe_libvox import Model, Result
+from evoframe_libvox import FIX_ALL, Model, Result
 
 ModelMaker = Callable[..., Model]
 Bodies = tuple[NDArray[np.uint8], NDArray[np.float64]]
@@ -24,9 +24,9 @@ def bodies() -> Bodies:
 
 @pytest.fixture
 def model(small_model: ModelMaker) -> Model:
-    clamped = np.zeros(CANVAS, bool)
-    clamped[0] = True
-    return small_model(CANVAS, clamped=clamped)
+    fixed = np.zeros(CANVAS, np.uint8)
+    fixed[0] = FIX_ALL
+    return small_model(CANVAS, fixed=fixed)
 
 
 def same(a: Result, b: Result) -> bool:
@@ -65,6 +65,25 @@ def test_sampling_more_changes_nothing(model: Model, bodies: Bodies) -> None:
     assert few.tracks.keys() == {"face"}
     assert np.array_equal(few.tracks["face"], every.tracks["face"][:, [3, 17]])
     assert model.simulate(*bodies, [], []).tracks == {}
+
+
+def test_each_body_may_have_its_own_samples(model: Model, bodies: Bodies) -> None:
+    every = model.simulate(*bodies, range(20))
+    rng = np.random.default_rng(3)
+    steps = np.array([np.sort(rng.choice(20, 5, replace=False)) for _ in range(len(bodies[0]))])
+    own = model.simulate(*bodies, steps)
+    for name, track in own.tracks.items():
+        expected = np.stack([all_of[at] for all_of, at in zip(every.tracks[name], steps, strict=True)])
+        assert np.array_equal(track, expected, equal_nan=True)
+    assert np.array_equal(own.diverged_step, every.diverged_step)
+
+
+def test_the_order_of_a_batch_does_not_matter(model: Model, bodies: Bodies) -> None:
+    order = np.random.default_rng(4).permutation(len(bodies[0]))
+    plain = model.simulate(*bodies, range(20))
+    shuffled = model.simulate(bodies[0][order], bodies[1][order], range(20))
+    expected = {name: track[order] for name, track in plain.tracks.items()}
+    assert same(shuffled, Result(expected, plain.diverged_step[order]))
 
 
 def test_phases_of_cells_that_do_not_expand_do_not_matter(model: Model, bodies: Bodies) -> None:

@@ -7,32 +7,71 @@ from typing import Any
 
 import pytest
 
+import evoframe_libvox
 from evoframe_libvox._vox import ffi, lib
 
 ROOT = Path(__file__).parent.parent.parent
 
 
+FIELDS = {
+    "nx": 2,
+    "ny": 1,
+    "nz": 1,
+    "voxel_size": 0.05,
+    "time_step_fraction": 0.9,
+    "substeps": 1,
+    "duration": 0.07,
+    "step_limit": 1000,
+    "temperature_amplitude": 14.0,
+    "period": 0.25,
+    "start_time": 0.0,
+    "ramp": 0.0,
+    "gravity": 0.0,
+    "floor": 0,
+    "floor_slope": 0.0,
+    "fluid_drag": 0.0,
+    "bond_damping": 1.0,
+    "slow_damping": 0.01,
+    "floor_damping": 0.8,
+    "contact_damping": 0.0,
+    "self_collision": 1,
+    "contact_friction": 0,
+    "complete_contacts": 0,
+    "collision_envelope": 1.5,
+    "collision_horizon": 2.0,
+    "collision_list_factor": 1.5,
+    "largest_strain": 100.0,
+    "largest_distance": 100.0,
+}
+SUBSTANCE = {
+    "used": 1,
+    "youngs_modulus": 5e6,
+    "poisson_ratio": 0.35,
+    "density": 1e6,
+    "expansion": 0.0,
+    "static_friction": 1.0,
+    "dynamic_friction": 0.5,
+}
+
+
 def settings(**changes: Any) -> Any:
-    fields = {
-        "nx": 2,
-        "ny": 1,
-        "nz": 1,
-        "voxel_size": 0.05,
-        "time_step_fraction": 0.9,
-        "duration": 0.07,
-        "temperature_amplitude": 14.0,
-        "period": 0.25,
-        "bond_damping": 1.0,
-        "slow_damping": 0.01,
-        "self_collision": 1,
-        "collision_horizon": 2.0,
-        "collision_list_factor": 1.5,
-    }
-    return ffi.new("struct vox_settings *", fields | changes)
+    return ffi.new("struct vox_settings *", FIELDS | changes)
 
 
-def palette() -> Any:
-    return ffi.new("struct vox_material[2]", [{}, {"used": 1, "youngs_modulus": 5e6, "density": 1e6}])
+def palette(**changes: Any) -> Any:
+    return ffi.new("struct vox_material[2]", [{}, SUBSTANCE | changes])
+
+
+def created(status: int, **changes: Any) -> Any:
+    """Create a model and check what that says; return the culprit."""
+    made, culprit = ffi.new("vox_model **"), ffi.new("int64_t *", 77)
+    fields, substance = ({k: v for k, v in changes.items() if k in one} for one in (FIELDS, SUBSTANCE))
+    fixed = ffi.new("uint8_t[]", changes.get("fixed", [0, 0]))
+    said = lib.vox_model_create(settings(**fields), palette(**substance), 2, fixed, made, culprit)
+    assert said == status
+    assert (made[0] == ffi.NULL) == (status != lib.VOX_OK)
+    lib.vox_model_destroy(made[0])
+    return culprit[0]
 
 
 @pytest.fixture
@@ -48,6 +87,35 @@ def test_every_status_has_a_message() -> None:
     assert len(set(messages)) == len(statuses)
     assert "unknown status" not in messages
     assert ffi.string(lib.vox_status_message(12345)) == b"unknown status"
+
+
+def test_every_field_is_given_here() -> None:
+    """So that the tests below start from a model that is whole."""
+    for struct, fields in (("vox_settings", FIELDS), ("vox_material", SUBSTANCE)):
+        assert [name for name, _ in ffi.typeof(f"struct {struct}").fields] == list(fields)
+
+
+def test_every_setting_and_property_has_a_status_of_its_name() -> None:
+    """But for the switches: each number that is none is refused by name, and those of materials by code."""
+    statuses = {name: code for code, name in ffi.typeof("enum vox_status").elements.items()}
+    switches = {"nx", "ny", "nz", "floor", "self_collision", "contact_friction", "complete_contacts", "used"}
+    for fields, culprit in ((FIELDS, -1), (SUBSTANCE, 1)):
+        for name in fields.keys() - switches:
+            bad = float("nan") if isinstance(fields[name], float) else -1
+            assert created(statuses[f"VOX_BAD_{name.upper()}"], **{name: bad}) == culprit
+
+
+def test_the_first_bad_cell_of_the_fixed_ones_is_named() -> None:
+    assert created(lib.VOX_OK, fixed=[0, 63]) == -1
+    assert created(lib.VOX_BAD_FIXED, fixed=[0, 64]) == 1
+    assert created(lib.VOX_BAD_FIXED, fixed=[255, 64]) == 0
+
+
+def test_degrees_of_freedom_are_bits() -> None:
+    bits = [lib.VOX_FIX_X, lib.VOX_FIX_Y, lib.VOX_FIX_Z]
+    bits += [lib.VOX_FIX_ROTATION_X, lib.VOX_FIX_ROTATION_Y, lib.VOX_FIX_ROTATION_Z]
+    assert bits == [1 << n for n in range(6)]
+    assert sum(bits) == lib.VOX_FIX_ALL == evoframe_libvox.FIX_ALL
 
 
 def test_missing_arguments_of_a_model() -> None:
@@ -89,6 +157,46 @@ def test_missing_arguments_of_a_batch(model: Any) -> None:
     assert lib.vox_time_steps(model, 1, material, ffi.NULL, ffi.NULL, ffi.NULL) == lib.VOX_OK
 
 
+def test_the_culprit_is_the_body(model: Any) -> None:
+    """Also where what is wrong is a row of the steps, or that there are too many."""
+    material, phase = ffi.new("uint8_t[4]", [1, 1, 1, 1]), ffi.new("double[4]")
+    tracks, diverged, culprit = ffi.new("struct vox_tracks *"), ffi.new("int64_t[2]"), ffi.new("int64_t *")
+    for steps, status, body in (
+        ([0, 1, 0, 1], lib.VOX_OK, -1),
+        ([0, 1, 1, 1], lib.VOX_BAD_SAMPLE_ORDER, 1),
+        ([0, 0, 1, 1], lib.VOX_BAD_SAMPLE_ORDER, 0),
+        ([0, 1, 2, 23], lib.VOX_SAMPLE_OUT_OF_RANGE, 1),
+    ):
+        rows = ffi.new("int64_t[4]", steps)
+        assert lib.vox_simulate(model, 2, material, phase, 2, rows, tracks, diverged, culprit) == status
+        assert culprit[0] == body
+    limited = ffi.new("vox_model **")
+    assert (
+        lib.vox_model_create(settings(step_limit=21), palette(), 2, ffi.NULL, limited, ffi.NULL) == lib.VOX_OK
+    )
+    assert lib.vox_time_steps(limited[0], 2, material, ffi.NULL, ffi.NULL, culprit) == lib.VOX_TOO_MANY_STEPS
+    assert culprit[0] == 0
+    lib.vox_model_destroy(limited[0])
+
+
+def test_what_is_refused_leaves_the_buffers_as_they_were(model: Any) -> None:
+    """Also those of the bodies before the one that is wrong."""
+    material, phase = ffi.new("uint8_t[4]", [1, 1, 1, 2]), ffi.new("double[4]")
+    tip, diverged = ffi.new("double[6]", [7.0] * 6), ffi.new("int64_t[2]", [7, 7])
+    tracks, steps = ffi.new("struct vox_tracks *", {"tip": tip}), ffi.new("int64_t[2]", [1, 1])
+    status = lib.vox_simulate(model, 2, material, phase, 1, steps, tracks, diverged, ffi.NULL)
+    assert status == lib.VOX_UNKNOWN_MATERIAL
+    assert list(tip) == [7.0] * 6
+    assert list(diverged) == [7, 7]
+
+
+def test_no_steps_are_needed_without_samples(model: Any) -> None:
+    material, phase = ffi.new("uint8_t[2]", [1, 1]), ffi.new("double[2]")
+    tracks, diverged = ffi.new("struct vox_tracks *"), ffi.new("int64_t[1]", [5])
+    assert lib.vox_simulate(model, 1, material, phase, 0, ffi.NULL, tracks, diverged, ffi.NULL) == lib.VOX_OK
+    assert diverged[0] == 0
+
+
 @pytest.mark.parametrize(("bodies", "samples"), [(-1, 1), (1, -1), (2**62, 1), (2**31, 2**31), (1, 2**62)])
 def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> None:
     material, phase = ffi.new("uint8_t[2]", [1, 1]), ffi.new("double[2]")
@@ -108,4 +216,5 @@ def test_a_program_in_c_runs(tmp_path: Path) -> None:
     embed = str(ROOT / "tests" / "libvox" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
     said = subprocess.run([program], check=True, capture_output=True, text=True).stdout
-    assert said.startswith("tip after 22 steps: ")
+    assert said.splitlines()[0].startswith("tip after 44 steps: ")
+    assert said.splitlines()[1].startswith("energy: ")

@@ -1,4 +1,4 @@
-"""A voxel that touches many others: all its dampers and frictions together take motion, and never give any."""
+"""A voxel that touches many others: all their dampers and frictions take motion, and never give any."""
 
 from typing import Any
 

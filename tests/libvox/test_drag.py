@@ -1,0 +1,149 @@
+"""Drag of a fluid on the outer surface: C A (v n)^2 on each facet that moves against it (section 7)."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from evoframe_libvox import Material, Model
+
+ModelMaker = Callable[..., Model]
+MaterialMaker = Callable[..., Material]
+Follow = Callable[..., dict[str, NDArray[np.float64]]]
+L = 0.05
+AREA = float(np.float32(L)) ** 2  # of a face at rest, m2
+MASS = 125.0  # kg
+G = -9.81
+DRAG = 750.0 * 1e4  # kg/m3; voxels are a thousand times as heavy as water, and a few edges deep
+
+
+def time_step(model: Model, body: Any = 1) -> float:
+    cells = np.broadcast_to(np.asarray(body, np.uint8), model.canvas)
+    return float(model.time_steps(cells[None])[0][0])
+
+
+def terminal_speed(voxels: int, faces: int) -> float:
+    return math.sqrt(voxels * MASS * -G / (DRAG * faces * AREA))
+
+
+def final_speed(model: Model, follow: Follow, body: Any = 1) -> float:
+    steps = int(model.time_steps(np.broadcast_to(np.asarray(body, np.uint8), (1, *model.canvas)))[1][0])
+    track = follow(model, body, steps=[steps - 1, steps], tracks=["body"])["body"]
+    return -float(track[1, 2] - track[0, 2]) / time_step(model, body)
+
+
+def test_a_falling_voxel_follows_the_equation(small_model: ModelMaker, follow: Follow) -> None:
+    model = small_model((1, 1, 1), gravity=G, fluid_drag=DRAG, slow_damping=0.0, duration=1.0)
+    z, dt = follow(model)["body"][:, 2], time_step(model)
+    speed, expected = 0.0, [L / 2]
+    for n in range(len(z) - 1):
+        area = AREA if n else L**2  # sizes lag by a step
+        speed += dt * (G + DRAG * area * speed**2 / MASS)
+        expected.append(expected[-1] + speed * dt)
+    assert np.abs(z - expected).max() < 1e-13
+    assert -speed == pytest.approx(terminal_speed(1, 1), rel=1e-6)
+
+
+@pytest.mark.parametrize("fluid_drag", [DRAG / 4, DRAG, DRAG * 4])
+def test_terminal_speed_goes_with_the_root_of_the_fluid(
+    small_model: ModelMaker, follow: Follow, fluid_drag: float
+) -> None:
+    model = small_model((1, 1, 1), gravity=G, fluid_drag=fluid_drag, slow_damping=0.0, duration=2.0)
+    expected = terminal_speed(1, 1) * math.sqrt(DRAG / fluid_drag)
+    assert final_speed(model, follow) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("canvas", [(1, 1, 4), (4, 1, 1), (3, 2, 1), (2, 3, 2), (3, 3, 3)])
+def test_terminal_speed_goes_with_weight_and_area(
+    small_model: ModelMaker, material: MaterialMaker, follow: Follow, canvas: tuple[int, int, int]
+) -> None:
+    """Of a body so stiff that its shape stays what it was; only the faces below count."""
+    stiff = {1: material(youngs_modulus=5e8)}
+    options = {"gravity": G, "fluid_drag": DRAG, "slow_damping": 0.0, "duration": 0.7}
+    model = small_model(canvas, palette=stiff, **options)
+    expected = terminal_speed(math.prod(canvas), canvas[0] * canvas[1])
+    assert final_speed(model, follow) == pytest.approx(expected, rel=1e-3)
+
+
+def test_grown_voxels_feel_more(small_model: ModelMaker, follow: Follow) -> None:
+    options = {"gravity": G, "fluid_drag": DRAG, "slow_damping": 0.0, "duration": 1.0, "period": 1e9}
+    model = small_model((1, 1, 1), **options)
+    steps = int(model.time_steps(np.full((1, 1, 1, 1), 3, np.uint8))[1][0])
+    z = follow(model, 3, 0.25, [steps - 1, steps], ["body"])["body"][:, 2]
+    assert (z[0] - z[1]) / time_step(model, 3) == pytest.approx(terminal_speed(1, 1) / 1.144714, rel=1e-5)
+
+
+def test_facets_push_along_their_normals(small_model: ModelMaker, follow: Follow) -> None:
+    """Two voxels part along the diagonal of their faces: each face ahead takes half of the square."""
+    model = small_model((2, 2, 1), fluid_drag=DRAG, slow_damping=0.0, duration=1.0, voxel_size=0.0625)
+    area, mass, dt = 0.0625**2, 1e6 * 0.0625**3, time_step(model, np.eye(2)[..., None])
+    voxels = follow(model, np.eye(2), tracks=["voxels"])["voxels"][:, 1, 1, 0]
+    assert np.abs(voxels[:, 0] - voxels[:, 1]).max() < 1e-15
+    speed = np.diff(voxels[:, 0]) / dt
+    apart = 2 * (voxels[:, 0] - 0.0625) > 1.5 * 0.0625 / math.sqrt(2)  # no contact any more
+    free = np.flatnonzero(apart)[0]
+    assert len(speed) - free > 100
+    expected = speed[free:-1] - dt * DRAG * area * speed[free:-1] ** 2 / mass
+    assert speed[free + 1 :] == pytest.approx(expected, rel=1e-9)
+
+
+def test_drag_only_takes_energy(small_model: ModelMaker, follow: Follow) -> None:
+    """A body that is left alone after a kick loses it faster in a fluid, and at rest it stays at rest."""
+    rng = np.random.default_rng(12)
+    body, phase = rng.choice([0, 1, 3, 3], (4, 3, 3)), rng.uniform(0.0, 0.25, (4, 3, 3))
+    options = {"slow_damping": 0.0, "bond_damping": 0.0, "period": 1e9, "self_collision": False}
+
+    def energies(drag: float, phase: Any) -> NDArray[np.float64]:
+        model = small_model(body.shape, fluid_drag=drag, **options, duration=2.0)
+        total: NDArray[np.float64] = follow(model, body, phase)["energy"].sum(axis=1)
+        return total
+
+    free, slowed = energies(0.0, phase), energies(DRAG, phase)
+    assert slowed[-100:].max() < 0.9 * free[-100:].min()
+    assert slowed[-100:].mean() < slowed[100:200].mean()
+    assert energies(DRAG, 0.0).max() < 1e-9
+
+
+def test_a_clamped_voxel_does_not_mind(small_model: ModelMaker, follow: Follow) -> None:
+    voxels = follow(small_model((2, 1, 1), fixed=[63, 63], fluid_drag=DRAG, gravity=G))["voxels"]
+    assert (voxels == voxels[0]).all()
+
+
+# ---- what is inside
+
+
+def falling_box(small_model: ModelMaker, material: MaterialMaker, follow: Follow, body: Any) -> float:
+    stiff = {1: material(youngs_modulus=5e8)}
+    options = {"gravity": G, "fluid_drag": DRAG, "slow_damping": 0.0, "duration": 0.7}
+    return final_speed(small_model(np.shape(body), palette=stiff, **options), follow, body)
+
+
+def test_a_sealed_cavity_feels_no_fluid(
+    small_model: ModelMaker, material: MaterialMaker, follow: Follow
+) -> None:
+    box = np.ones((3, 3, 3))
+    box[1, 1, 1] = 0
+    assert falling_box(small_model, material, follow, box) == pytest.approx(terminal_speed(26, 9), rel=1e-3)
+
+
+def test_an_open_cavity_does(small_model: ModelMaker, material: MaterialMaker, follow: Follow) -> None:
+    """In a tunnel the fluid reaches three faces of the lid from below; a hole in the lid opens none."""
+    tunnel, pot = np.ones((3, 3, 3)), np.ones((3, 3, 3))
+    tunnel[:, 1, 1] = 0
+    pot[1, 1, 1:] = 0
+    through = falling_box(small_model, material, follow, tunnel)
+    assert through == pytest.approx(terminal_speed(24, 9 + 3), rel=1e-3)
+    assert falling_box(small_model, material, follow, pot) == pytest.approx(terminal_speed(25, 9), rel=1e-3)
+
+
+def test_fluid_does_not_pass_through_edges(
+    small_model: ModelMaker, material: MaterialMaker, follow: Follow
+) -> None:
+    """A cavity that meets the notches in two sides at an edge stays sealed; their upper walls count."""
+    box = np.ones((3, 3, 4))
+    box[1, 1, 1] = box[0, 1, 2] = box[2, 1, 2] = 0
+    speed = falling_box(small_model, material, follow, box)
+    assert speed == pytest.approx(terminal_speed(33, 9 + 2), rel=1e-3)
