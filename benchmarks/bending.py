@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 import evoframe
 from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, PASSIVE, Design, Record
+from evoframe.verification import verify_design
 
 FREQUENCIES = (1.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0, 12.0)  # Hz
 DAMPINGS = (0.0, 0.001, 0.003, 0.01)
@@ -92,9 +93,11 @@ def main() -> None:
         say(f"first bending mode, {name}: {mode:.2f} Hz; the drive is at {vox.frequency / mode:.2f} of it")
     displacement, cpu = bending(vox, objective, bimorph(canvas))
     say(f"bimorph: {displacement:.3f} voxel edges; {cpu:.2f} s of CPU")
-    for variant in vox.variants(bimorph(canvas), objective.record):
-        [outcome] = variant.simulator.simulate([variant.design], variant.record)
-        say(f"  {variant.name}: {objective.score(outcome) / vox.voxel_size:.3f}")
+    workers = config.executor.component.start()
+    for finding in verify_design(vox, objective, bimorph(canvas), workers).findings:
+        least, greatest = (value / vox.voxel_size for value in (finding.values[0], finding.values[-1]))
+        say(f"  {finding.name}: {least:.7f} to {greatest:.7f} in {len(finding.values)}")
+    workers.close()
     for frequency in FREQUENCIES:
         displacement, _ = bending(*driven_at(vox, objective, frequency), bimorph(canvas))
         say(f"drive {frequency:g} Hz: {displacement:.3f} voxel edges")
