@@ -3,16 +3,17 @@
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
+SECONDS ?= 30 # of fuzzing
 SOURCES := pyproject.toml setup.py $(wildcard libvox/*.c libvox/*.h libvox/*.py libvox/include/*.h)
 
-.PHONY: run test lint types imports unit sanitize clean
+.PHONY: run test lint types imports unit sanitize fuzz clean
 
 ## run: the published experiment
 run: $(VENV)/installed
 	$(BIN)/evoframe run
 
 ## test: everything that CI checks
-test: lint types imports unit sanitize
+test: lint types imports unit sanitize fuzz
 
 ## lint: style of the Python code
 lint: $(VENV)/developing
@@ -35,6 +36,10 @@ unit: $(VENV)/developing
 sanitize: $(VENV)/developing
 	PYTHON=$(BIN)/python libvox/sanitize.sh
 
+## fuzz: SECONDS of inputs that nobody would write, for libvox, the reader of VXA files and that of configurations
+fuzz: $(VENV)/fuzzing
+	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
+
 clean:
 	rm -rf $(VENV) build dist *.egg-info libvox/evoframe_libvox/_vox.c libvox/evoframe_libvox/_vox.*.so
 
@@ -48,4 +53,8 @@ $(VENV)/installed: $(BIN)/python $(SOURCES)
 
 $(VENV)/developing: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --group dev
+	touch $@
+
+$(VENV)/fuzzing: $(VENV)/developing
+	$(BIN)/python -m pip install --quiet 'atheris>=3,<4'
 	touch $@

@@ -10,7 +10,7 @@ import numpy as np
 from attrs import validators
 from numpy.typing import NDArray
 
-__all__ = ["DEGREES_OF_FREEDOM", "DegreeOfFreedom", "FixedRegion", "fixed_mask"]
+__all__ = ["DEGREES_OF_FREEDOM", "DegreeOfFreedom", "FixedRegion", "fixed_mask", "overlapping"]
 
 DegreeOfFreedom = Literal["x", "y", "z", "rx", "ry", "rz"]
 
@@ -58,13 +58,13 @@ def fixed_mask(regions: Iterable[FixedRegion], canvas: tuple[int, int, int]) -> 
     """Return the degrees of freedom that each cell has lost, as bits, ``uint8[X, Y, Z]``."""
     mask = np.zeros(canvas, np.uint8)
     for region in regions:
-        inside = [_overlapping(*span) for span in zip(region.origin, region.size, canvas, strict=True)]
+        inside = [overlapping(*span) for span in zip(region.origin, region.size, canvas, strict=True)]
         mask[np.ix_(*inside)] |= np.uint8(region.bits)
     return mask
 
 
-def _overlapping(start: float, length: float, cells: int) -> NDArray[np.bool_]:
-    """Return which cells of an axis overlap a span; what only touches it does not."""
+def overlapping(start: float, length: float, cells: int) -> NDArray[np.bool_]:
+    """Return which cells of an axis overlap a span in fractions of it; what only touches it does not."""
     index = np.arange(cells)
-    overlapping: NDArray[np.bool_] = ((index + 1) / cells > start) & (index / cells < start + length)
-    return overlapping
+    held: NDArray[np.bool_] = ((index + 1) / cells > start) & (index / cells < start + length)
+    return held

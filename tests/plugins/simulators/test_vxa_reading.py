@@ -21,7 +21,14 @@ EXAMPLES = Path(__file__).parents[2] / "data" / "vxa"
 
 Write = Callable[..., Path]
 
-SLAB = {"origin": [0.0, 0.0, 0.0], "degrees_of_freedom": ["x", "y", "z", "rx", "ry", "rz"]}
+
+def slab(x: int, canvas: tuple[int, int, int]) -> dict[str, Any]:
+    """Return the region that holds all cells of one x, from the centre of the first to that of the last."""
+    return {
+        "origin": [(x + 0.5) / canvas[0], *(0.5 / cells for cells in canvas[1:])],
+        "size": [0.0, *((cells - 1) / cells for cells in canvas[1:])],
+        "degrees_of_freedom": ["x", "y", "z", "rx", "ry", "rz"],
+    }
 
 
 def simulator(path: Path) -> Vox:
@@ -43,7 +50,7 @@ class TestTemplate:
     path = EXAMPLES / "template.vxa"
 
     def test_has_the_settings_of_the_paper(self) -> None:
-        assert changed(self.path) == {"fixed": [{**SLAB, "size": [0.01, 1.0, 1.0]}]}
+        assert changed(self.path) == {"fixed": [slab(0, (6, 3, 3))]}
 
     def test_has_the_materials_that_voxels_have(self) -> None:
         palette = simulator(self.path).palette
@@ -134,10 +141,7 @@ class TestVoxcad:
             "slow_damping": 0.001,
             "collision_damping": 1.0,
             "self_collision": False,
-            "fixed": [
-                {**SLAB, "size": [0.01, 1.0, 1.0]},
-                {**SLAB, "origin": [0.99, 0.0, 0.0], "size": [0.01, 1.0, 1.0]},
-            ],
+            "fixed": [slab(0, (5, 1, 1)), slab(4, (5, 1, 1))],
         }
         [material] = simulator(self.path).palette
         assert (material.poisson_ratio, material.static_friction, material.dynamic_friction) == (0, 0, 0)
@@ -175,6 +179,11 @@ class TestSettings:
             ({"TempAmp": 25, "VaryTempEnabled": 0}, {"temperature_amplitude": 25.0}),
             ({"TempBase": 20, "TempAmp": 30}, {"temperature_base": 20.0, "temperature_amplitude": 30.0}),
             ({"TempPeriod": 0.5}, {"frequency": 2.0}),
+            ({"StopConditionType": 3, "StopConditionValue": 2}, {"duration": 0.5}),
+            (
+                {"StopConditionType": 3, "StopConditionValue": 2, "TempPeriod": 0.5, "TempEnabled": 0},
+                {"duration": 1.0, "temperature_amplitude": 25.0},
+            ),
             (
                 {"BondDampingZ": 0.1, "ColDampingZ": 0, "SlowDampingZ": "1e-003"},
                 {
@@ -240,6 +249,32 @@ class TestSettings:
         assert vox.read(path)[0][1].roles["morphology"].ravel().tolist() == [1, 9, 10, 19, 0]
         assert [material.youngs_modulus for material in vox.palette] == [1e7, 7e6, 8e6, 17e6]
 
+    @pytest.mark.parametrize("code", [85, 112])
+    def test_materials_that_are_blanks_of_unicode_are_cells(self, vxa: Write, code: int) -> None:
+        path = vxa("voxcad")
+        mechanical = "<Mechanical><Elastic_Mod>1e7</Elastic_Mod><Density>1e3</Density></Mechanical>"
+        palette, blank = "<Palette>" + 112 * f"<Material>{mechanical}</Material>", chr(48 + code)
+        text = path.read_text().replace("<Palette>", palette).replace("11111", f"\n{blank}111{blank} ")
+        path.write_text(text, encoding="utf-8")
+        [(_, design)] = simulator(path).read(path)
+        assert design.roles["morphology"].ravel().tolist() == [code, 1, 1, 1, code]
+
+    def test_periods_that_are_counted_are_of_single_precision(self, vxa: Write) -> None:
+        path = vxa(StopConditionType=3, StopConditionValue=3, TempPeriod=0.1)
+        assert simulator(path).duration == 3 * float(np.float32(0.1))
+
+    @pytest.mark.parametrize(("value", "period"), [("1e300", "1e30"), ("2", "1e-60")])
+    def test_periods_out_of_range_are_refused(self, vxa: Write, value: str, period: str) -> None:
+        path = vxa(StopConditionType=3, StopConditionValue=value, TempPeriod=period, TempEnabled=0)
+        with pytest.raises(InputError, match=r"given\.vxa: "):
+            simulator(path)
+
+    @pytest.mark.parametrize(("value", "period"), [(0, 0.25), (2, 0), (-1, 0.25), (2, -0.1)])
+    def test_no_periods_are_no_duration(self, vxa: Write, value: float, period: float) -> None:
+        path = vxa(StopConditionType=3, StopConditionValue=value, TempPeriod=period, TempEnabled=0)
+        with pytest.raises(InputError, match=r"(StopConditionValue|TempPeriod): expected a number above 0"):
+            simulator(path)
+
     def test_an_npz_file_brings_none(self, tmp_path: Path) -> None:
         assert Vox.settings_of(tmp_path / "no.npz") is None
 
@@ -261,7 +296,7 @@ class TestRefusals:
             ("Integrator", "1", "Simulator/Integration/Integrator = '1'"),
             ("ColSystem", "0", "Simulator/Collisions/ColSystem = '0' (vox searches as 3 does)"),
             ("StopConditionType", "0", "StopCondition/StopConditionType = '0'"),
-            ("StopConditionType", "3", "StopCondition/StopConditionType = '3' (vox stops after a time"),
+            ("StopConditionType", "4", "StopCondition/StopConditionType = '4' (vox stops after a time"),
             ("ActuationStartTime", "0.1", "ActuationStartTime = '0.1' (later than InitCmTime)"),
             ("VaryTempEnabled", "0", "Thermal/VaryTempEnabled = '0' (with TempEnabled = 1, a constant"),
             ("ForceX", "3", "Environment/Boundary_Conditions/FRegion 1/ForceX = '3'"),
@@ -294,8 +329,7 @@ class TestRefusals:
             ("<Features>", "<VolumeEffectsEnabled>1</VolumeEffectsEnabled>", "VolumeEffectsEnabled = '1'"),
             ("<Features>", "<BlendingEnabled>1</BlendingEnabled>", "Features/BlendingEnabled = '1'"),
             ("<Features>", "<MaxVelLimitEnabled>1</MaxVelLimitEnabled>", "MaxVelLimitEnabled = '1'"),
-            ("</GA>", "<ParentLifetime>2</ParentLifetime>", "ParentLifetime = '2' (unknown to vox)"),
-            ("<LightSource>", "<X>3</X>", "Environment/LightSource/X = '3'"),
+            ("</GA>", "<ParentsWanted>2</ParentsWanted>", "ParentsWanted = '2' (unknown to vox)"),
             ("<Environment>", "<FloorRadius>4</FloorRadius>", "Environment/FloorRadius = '4'"),
             ("<Environment>", "<Sources><Source/></Sources>", "Environment/Sources = ''"),
             ("<Environment>", "<Wind><A>0</A><B>3</B></Wind>", "Environment/Wind = '0 3' (unknown to vox)"),
@@ -355,6 +389,35 @@ class TestRefusals:
     )
     def test_unknown_tags_that_are_off_are_none(self, vxa: Write, more: str) -> None:
         assert read_vxa(vxa(after={"<Environment>": more})).canvas == (6, 3, 3)
+
+    @pytest.mark.parametrize(
+        ("after", "more"),
+        [
+            ("</GA>", "<ParentLifetime>2</ParentLifetime>"),
+            ("</GA>", "<SimStop><SimStopWhat>3</SimStopWhat></SimStop>"),
+            ("<Environment>", "<BallisticSlowdownFact>10</BallisticSlowdownFact>"),
+            ("<Environment>", "<MaxSlowdownPermitted>0.1</MaxSlowdownPermitted>"),
+            ("<Environment>", "<MinGrowthTime>0.1</MinGrowthTime>"),
+            ("<Mechanical>", "<IsConductive>1</IsConductive>"),
+            ("<Mechanical>", "<IsPacemaker>1</IsPacemaker>"),
+            ("<Mechanical>", "<MaterialTempPhase>0.5</MaterialTempPhase>"),
+            ("<LightSource>", "<X>3</X>"),
+        ],
+    )
+    def test_tags_that_move_no_voxel_are_none(self, vxa: Write, after: str, more: str) -> None:
+        assert changed(vxa(after={after: more})) == changed(vxa())
+
+    @pytest.mark.parametrize(
+        "tag",
+        [
+            "TiltVectorsUpdatesPerTempCycle",
+            "SignalingUpdatesPerTempCycle",
+            "GrowthSpeedLimit",
+            "GreedyGrowth",
+        ],
+    )
+    def test_values_that_move_no_voxel_are_none(self, vxa: Write, tag: str) -> None:
+        assert changed(vxa(**{tag: 4})) == changed(vxa())
 
     def test_materials_that_no_voxel_has_are_not_looked_at(self, vxa: Write) -> None:
         path = vxa()

@@ -198,6 +198,11 @@ class TestFile:
         text = Vox(voxel_size=size).export(body(), "vxa").data.decode()
         assert f"<Lattice_Dim>{size!r}</Lattice_Dim>" in text
 
+    @pytest.mark.parametrize(("duration", "between"), [(0.07, "0.01"), (1.0, "0.01"), (50.0, "0.5")])
+    def test_traces_of_a_long_simulation_are_sparse(self, duration: float, between: str) -> None:
+        root = etree.fromstring(Vox(duration=duration).export(body(), "vxa").data)
+        assert root.findtext("Environment/TimeBetweenTraces") == between
+
     def test_positions_in_the_palette_are_codes(self) -> None:
         root = etree.fromstring(Vox().export(body(), "vxa").data)
         names = [element.text for element in root.findall("VXC/Palette/Material/Name")]

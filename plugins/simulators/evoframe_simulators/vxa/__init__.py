@@ -1,4 +1,9 @@
-"""VXA: files of VoxCAD and the old Voxelyze engine, as ``reconfigurable_organisms`` and evosoro use them."""
+"""VXA: files of VoxCAD and the old Voxelyze engine, as the fork ``reconfigurable_organisms`` reads them.
+
+Evosoro's files are read as that fork would read them (see :mod:`~evoframe_simulators.vxa.schema`). Of its own
+engines ``_voxcad`` caps the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, so that what is
+written here expands only in the fork and in ``_voxcad_land_water``.
+"""
 
 from evoframe_simulators.vxa.file import VxaFile
 from evoframe_simulators.vxa.reading import read_vxa

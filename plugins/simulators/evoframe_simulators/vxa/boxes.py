@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from evoframe import InputError
 from evoframe_simulators.regions import DEGREES_OF_FREEDOM, FixedRegion
+from evoframe_simulators.vxa.cells import Lattice, as_engine_holds
 from evoframe_simulators.vxa.document import shown
 from evoframe_simulators.vxa.file import SHAPES
 from evoframe_simulators.vxa.sections import Refusals, Section
@@ -16,11 +17,14 @@ _ALL = 2 ** len(DEGREES_OF_FREEDOM) - 1
 _OLDER = {"Fixed_Regions": "NumFixed", "Forced_Regions": "NumForced"}
 
 
-def regions_in(environment: Section, refusals: Refusals) -> tuple[FixedRegion, ...]:
-    """Return the regions that hold voxels, those of older files too; the others are inert and left out.
+def regions_in(environment: Section, lattice: Lattice, refusals: Refusals) -> tuple[FixedRegion, ...]:
+    """Return the regions that hold cells, those of older files too; the others are inert and left out.
+
+    Each holds the cells that it holds in the engine (see :mod:`~evoframe_simulators.vxa.cells`).
 
     Args:
         environment: Has them in ``Boundary_Conditions``, or in ``Fixed_Regions`` and ``Forced_Regions``.
+        lattice: The cells.
         refusals: Where regions are noted that are no boxes.
 
     Raises:
@@ -36,7 +40,9 @@ def regions_in(environment: Section, refusals: Refusals) -> tuple[FixedRegion, .
         for section in beside:  # which the engine does not read then
             refusals.add(section.place if section else "", "regions", "beside Boundary_Conditions")
     boxes = [_box(region, refusals) for region in found]
-    return tuple(box for box in boxes if box is not None and box.degrees_of_freedom)
+    holding = [box for box in boxes if box is not None and box.degrees_of_freedom]
+    held = [as_engine_holds(box, lattice) for box in holding]
+    return tuple(box for box in held if box is not None)
 
 
 def _listed(section: Section | None, counted: str) -> Iterator[Section]:

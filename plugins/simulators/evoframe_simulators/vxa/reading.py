@@ -1,4 +1,8 @@
-"""VXA files read: the body, its offsets, and the options of ``vox`` that simulate it as the engine would."""
+"""VXA files read: the body, its offsets, and the options of ``vox`` that simulate it as the engine would.
+
+The engine is that of the fork ``reconfigurable_organisms``. Under water (``FluidEnvironment`` 1) it keeps
+gravity and floor, and so does vox; evosoro's ``_voxcad_land_water`` switches both off then.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from lxml import etree
 from evoframe import InputError
 from evoframe_simulators.materials import PaletteMaterial, single
 from evoframe_simulators.vxa.boxes import regions_in
+from evoframe_simulators.vxa.cells import Lattice
 from evoframe_simulators.vxa.checking import refuse_the_unknown
 from evoframe_simulators.vxa.document import parsed, shown
 from evoframe_simulators.vxa.file import VxaFile
@@ -22,6 +27,8 @@ __all__ = ["read_vxa"]
 
 _VERSIONS = ("", "0.93", "0.94")  # of the section VXC; the structure of others is written in another way
 _HORIZON_SYSTEMS = (2, 3)  # one and the same in the engine, whose choice of all voxels is never taken
+_PERIODS = 3  # of the temperature, whether it varies or not
+_DURATIONS = (2, _PERIODS)
 _MOST_STEPS = 10**12
 
 
@@ -51,13 +58,14 @@ def _file(element: etree._Element) -> VxaFile:
     simulator, environment, vxc = (root.need(tag) for tag in ("Simulator", "Environment", "VXC"))
     structure, palette = vxc.need("Structure"), vxc.need("Palette")
     _check_encoding(vxc, structure, refusals)
-    material = material_in(structure, canvas_in(structure), palette.count("Material"))
+    lattice = Lattice(canvas_in(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
+    material = material_in(structure, lattice.canvas, palette.count("Material"))
     used = np.unique(material[material > 0]).tolist()
     refuse_the_unknown(root, used, refusals)
-    stop, steps = _stop(simulator, refusals)
+    stop, steps = _stop(simulator, environment, refusals)
     options = {
-        "voxel_size": vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0),
-        "fixed": regions_in(environment, refusals),
+        "voxel_size": lattice.edge,
+        "fixed": regions_in(environment, lattice, refusals),
         **_integration(simulator),
         **_collisions(simulator, refusals),
         **stop,
@@ -67,7 +75,7 @@ def _file(element: etree._Element) -> VxaFile:
     }
     refusals.check()
     options["palette"] = _palette(palette, used)
-    return VxaFile(options, material, phase_in(structure, material.shape), steps)
+    return VxaFile(options, material, phase_in(structure, lattice.canvas), steps)
 
 
 def _check_encoding(vxc: Section, structure: Section, refusals: Refusals) -> None:
@@ -101,7 +109,7 @@ def _collisions(simulator: Section, refusals: Refusals) -> dict[str, Any]:
     return {"self_collision": True, "collision_horizon": section.number("CollisionHorizon", 2.0, least=1.0)}
 
 
-def _stop(simulator: Section, refusals: Refusals) -> tuple[dict[str, Any], int | None]:
+def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple[dict[str, Any], int | None]:
     """Return when the actuation begins and the simulation ends, and the steps if they are counted instead."""
     section = simulator.need("StopCondition")
     start = section.number("InitCmTime", 0.0, least=0.0)
@@ -116,11 +124,14 @@ def _stop(simulator: Section, refusals: Refusals) -> tuple[dict[str, Any], int |
                 f"{section.at('StopConditionValue')}: {counted:g} steps; at most {_MOST_STEPS:g}"
             )
         return {"start_time": start}, math.floor(counted + 0.5) + 1
-    if kind != 2:
-        why = "vox stops after a time (2) or a number of steps (1)"
+    if kind not in _DURATIONS:
+        why = "vox stops after a time (2), periods of the temperature (3) or a number of steps (1)"
         refusals.add(section.at("StopConditionType"), shown(str(kind)), why)
         return {}, None
-    return {"start_time": start, "duration": section.number("StopConditionValue", 0.0, above=0.0)}, None
+    duration = section.number("StopConditionValue", 0.0, above=0.0)
+    if kind == _PERIODS:
+        duration *= single(environment.need("Thermal").number("TempPeriod", 0.1, above=0.0))
+    return {"start_time": start, "duration": duration}, None
 
 
 def _gravity(environment: Section) -> dict[str, Any]:

@@ -1,12 +1,16 @@
 """The tags of the dialect, and what becomes of each when a file is read.
 
-Facts about the engine (the old Voxelyze in the fork ``reconfigurable_organisms``, and in evosoro) that are
-used here and in :mod:`~evoframe_simulators.vxa.reading`, beside those of physics.md:
+A file is read as the fork ``reconfigurable_organisms`` of the old Voxelyze reads it. Facts about this engine
+that are used here and in :mod:`~evoframe_simulators.vxa.reading`, beside those of physics.md:
 
 - A tag that stands alone in its section is looked for by name; of two with one name the engine takes the
   first, so a file with two is refused.
 - Sections that are missing leave the engine's own defaults, which are not those of missing tags: without
   ``Gravity`` there is gravity and a floor, without ``Damping`` another slow damping. Such files are refused.
+- Under water (``FluidEnvironment`` 1) gravity and floor stay as they are.
+
+Evosoro's engines differ: ``_voxcad_land_water`` switches gravity and floor off under water, and ``_voxcad``
+caps the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, which with 0 leaves no expansion.
 
 The rule for tags that vox does not simulate: a tag that the schema knows to switch something on is refused
 unless it has its value for "off"; a tag that it does not know is refused unless all that it holds is empty, a
@@ -29,7 +33,7 @@ class Role(enum.Enum):
     """It is an option of vox."""
 
     IDLE = enum.auto()
-    """It changes nothing that is simulated: a name, a colour, a file, or a detail of what is off."""
+    """It changes nothing that is simulated: a name, a colour, a file, a detail of what is off or not read."""
 
     REFUSED = enum.auto()
     """Whatever it holds, it switches on what vox does not simulate."""
@@ -58,7 +62,9 @@ MATERIAL: Final[Schema] = {
         "Density": READ,
         "Poissons_Ratio": READ,
         "CTE": READ,
-        "MaterialTempPhase": OFF,
+        "MaterialTempPhase": IDLE,
+        "IsConductive": IDLE,
+        "IsPacemaker": IDLE,
         "uStatic": READ,
         "uDynamic": READ,
     },
@@ -104,6 +110,8 @@ _SIMULATOR: Final[Schema] = {
     "EquilibriumMode": {"EquilibriumModeEnabled": OFF},
     "SurfMesh": IDLE,
     "GA": IDLE,
+    "SimStop": IDLE,
+    "ParentLifetime": IDLE,
     "MinTempFact": 0.1,
     # Of stiffness that changes and of voxels that seek a source, which need what is refused below.
     "MaxTempFactChange": IDLE,
@@ -144,7 +152,7 @@ _ENVIRONMENT: Final[Schema] = {
         "OutputSmoothing": IDLE,
     },
     "RegenerationModel": {
-        "TiltVectorsUpdatesPerTempCycle": OFF,
+        "TiltVectorsUpdatesPerTempCycle": IDLE,
         "RegenerationModelUpdatesPerTempCycle": OFF,
         "NumHiddenRegenerationNeurons": IDLE,
         "RegenerationModelInputBias": IDLE,
@@ -152,15 +160,18 @@ _ENVIRONMENT: Final[Schema] = {
     "ForwardModel": {"ForwardModelUpdatesPerTempCycle": OFF},
     "Controller": {"ControllerUpdatesPerTempCycle": OFF},
     "Signaling": {
-        "SignalingUpdatesPerTempCycle": OFF,
+        "SignalingUpdatesPerTempCycle": IDLE,
         "DepolarizationsPerTempCycle": IDLE,
         "RepolarizationsPerTempCycle": IDLE,
     },
-    "LightSource": {"X": OFF, "Y": OFF, "Z": OFF},
+    "LightSource": IDLE,
     "GrowthAmplitude": OFF,
-    "GrowthSpeedLimit": OFF,
-    "GreedyGrowth": OFF,
+    "GrowthSpeedLimit": IDLE,
+    "GreedyGrowth": IDLE,
     "GreedyThreshold": IDLE,
+    "BallisticSlowdownFact": IDLE,
+    "MaxSlowdownPermitted": IDLE,
+    "MinGrowthTime": IDLE,
     "TimeBetweenTraces": IDLE,
     "SaveTraces": IDLE,
     "SavePassiveData": IDLE,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from string import whitespace
 from typing import TypeVar
 
 import numpy as np
@@ -105,7 +106,7 @@ def _layers(section: Section, canvas: tuple[int, int, int]) -> Iterator[Section]
 def _text(layer: Section) -> str:
     if len(layer.element):
         raise InputError(f"{layer.place} has tags in it; expected text")
-    return (layer.element.text or "").strip()
+    return (layer.element.text or "").strip(whitespace)  # of ASCII: others are the materials 85 and 112
 
 
 def _arranged(rows: list[NDArray[T]], canvas: tuple[int, int, int]) -> NDArray[T]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from evoframe import InputError
 from evoframe_simulators.bodies import check_cycles
 from evoframe_simulators.materials import PaletteMaterial, materials_of, single
+from evoframe_simulators.vxa.cells import as_vox_holds
 from evoframe_simulators.vxa.file import FIRST_CHARACTER
 from evoframe_simulators.vxa.inert import CHANGES, CONTROLLERS, FEATURES, GROWTH, TASKS, UNUSED
 
@@ -75,7 +76,7 @@ def write_vxa(
     usable = (material > 0) & np.isfinite(phase_cycles)
     lines = [
         *_node("Simulator", _simulator(vox)),
-        *_node("Environment", _environment(vox)),
+        *_node("Environment", _environment(vox, _fixed(vox, material.shape))),
         *_node("VXC", _vxc(vox, material, np.where(usable, phase_cycles, 0.0)), Version="0.93"),
     ]
     head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
@@ -136,9 +137,16 @@ def _simulator(vox: Vox) -> Iterator[str]:
     yield from _values({"MinTempFact": 0.1, **CHANGES})
 
 
-def _environment(vox: Vox) -> Iterator[str]:
-    regions = [line for region in vox.fixed for line in _section("FRegion", _region(region))]
-    yield from _node("Boundary_Conditions", [*_values({"NumBCs": len(vox.fixed)}), *regions])
+def _fixed(vox: Vox, canvas: tuple[int, ...]) -> list[FixedRegion]:
+    """Return the regions that hold a cell, each so that it holds the same cells in the engine."""
+    x, y, z = canvas
+    held = [as_vox_holds(region, (x, y, z)) for region in vox.fixed]
+    return [region for region in held if region is not None]
+
+
+def _environment(vox: Vox, fixed: list[FixedRegion]) -> Iterator[str]:
+    regions = [line for region in fixed for line in _section("FRegion", _region(region))]
+    yield from _node("Boundary_Conditions", [*_values({"NumBCs": len(fixed)}), *regions])
     gravity = {
         "GravEnabled": vox.gravity != 0.0,
         "GravAcc": vox.gravity,
@@ -157,7 +165,8 @@ def _environment(vox: Vox) -> Iterator[str]:
     yield from _section("Thermal", thermal)
     for tag, values in CONTROLLERS.items():
         yield from _section(tag, values)
-    yield from _values({**GROWTH, "TimeBetweenTraces": 0.01, "SavePassiveData": 0, **TASKS})
+    traces = max(0.01, vox.duration / 100)  # of a long simulation the engine would write huge ones
+    yield from _values({**GROWTH, "TimeBetweenTraces": traces, "SavePassiveData": 0, **TASKS})
     yield from _values({"FluidEnvironment": vox.fluid_drag > 0.0, "AggregateDragCoefficient": vox.fluid_drag})
 
 

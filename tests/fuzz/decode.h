@@ -1,0 +1,300 @@
+/* Bytes into arguments of libvox: mostly ones that really simulate something, now and then anything at all.
+ *
+ * One byte is one number for most of its values, so that short inputs reach far, and the rest of them stand for
+ * numbers that nobody should give. An input that ends early goes on with zeros.
+ */
+#ifndef DECODE_H
+#define DECODE_H
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "vox.h"
+
+enum { MOST_CELLS = 216, MOST_BODIES = 3, MOST_SAMPLES = 4, N_TRACKS = 7 };
+
+/* What is wrong with a call as a whole; one of them at a time. */
+enum fault {
+    NO_FAULT = 0,
+    NO_SETTINGS,
+    NO_PALETTE,
+    NO_PLACE_FOR_MODEL,
+    NO_CULPRIT,
+    NO_MODEL,
+    NO_MATERIAL,
+    NO_PHASES,
+    NO_SAMPLE_STEPS,
+    NO_TRACKS,
+    NO_DIVERGED_STEP,
+    ABSURD_CODES,
+    ABSURD_BODIES,
+    ABSURD_SAMPLES,
+    MEMORY_FOR_MODEL,
+    MEMORY_FOR_BODIES,
+    N_FAULTS
+};
+
+struct source {
+    const uint8_t *at;
+    size_t left;
+};
+
+/* Every array has exactly the size that the call may read. */
+struct arguments {
+    enum fault fault;
+    int64_t fail_at; /* the allocation that fails, with the MEMORY faults */
+    struct vox_settings settings;
+    int32_t n_codes;
+    struct vox_material *palette;
+    uint8_t *fixed;
+    int64_t cells; /* 0 for a canvas that must be refused */
+    int64_t n_bodies;
+    uint8_t *material;
+    double *phases;
+    int64_t n_samples;
+    int64_t *samples;
+    unsigned wanted; /* tracks, as bits */
+};
+
+static const double AWKWARD[] = {
+    0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 89.0, -89.5, 1e-6, 1e6, 1e-160, 1e160, 1e-300, 1e300, 4.9e-324, DBL_MIN, DBL_MAX,
+    -DBL_MAX, DBL_EPSILON, 9007199254740993.0, 9.3e18, INFINITY, -INFINITY, NAN,
+};
+static const int64_t ABSURD[] = {0, -1, INT64_MIN, INT64_MAX, INT64_C(1) << 61, INT64_C(1) << 32, VOX_MAX_CELLS,
+                                 VOX_MAX_CELLS + 1, 4096, 257, INT32_MAX};
+
+#define PICK(list, n) ((list)[(size_t)(n) % (sizeof(list) / sizeof *(list))])
+
+static uint8_t next_byte(struct source *source)
+{
+    if (source->left == 0) return 0;
+    source->left--;
+    return *source->at++;
+}
+
+static double next_raw(struct source *source)
+{
+    uint8_t bytes[sizeof(double)];
+    for (size_t i = 0; i < sizeof bytes; i++) bytes[i] = next_byte(source);
+    double number;
+    memcpy(&number, bytes, sizeof number);
+    return number;
+}
+
+/* The lower end, a number up to the upper end, or something else altogether. */
+static double next_number(struct source *source, double low, double high)
+{
+    const uint8_t byte = next_byte(source);
+    if (byte == 255) return next_raw(source);
+    if (byte == 254) return PICK(AWKWARD, next_byte(source));
+    if (byte < 16) return low;
+    return low + (high - low) * (byte - 16) / 237.0;
+}
+
+/* The same on a logarithmic scale. */
+static double next_scale(struct source *source, double low, double high)
+{
+    const uint8_t byte = next_byte(source);
+    if (byte == 255) return next_raw(source);
+    if (byte == 254) return PICK(AWKWARD, next_byte(source));
+    return low * pow(high / low, byte / 253.0);
+}
+
+static int64_t next_count(struct source *source, int64_t low, int64_t high)
+{
+    const uint8_t byte = next_byte(source);
+    if (byte == 255) return PICK(ABSURD, next_byte(source));
+    return low + byte % (high - low + 1);
+}
+
+/* An allocation that the sanitizer guards at its very end; of no length too. */
+static void *exactly(int64_t count, size_t size)
+{
+    void *place = malloc((size_t)count * size);
+    if (!place) abort();
+    return place;
+}
+
+/* ---- the model -------------------------------------------------------------------------------------------- */
+
+static struct vox_material next_material(struct source *source)
+{
+    return (struct vox_material){
+        .used = 1,
+        .youngs_modulus = next_scale(source, 1e3, 1e8),
+        .poisson_ratio = next_number(source, 0.0, 0.49),
+        .density = next_scale(source, 1e2, 1e6),
+        .expansion = next_number(source, -0.02, 0.02),
+        .static_friction = next_number(source, 0.0, 2.0),
+        .dynamic_friction = next_number(source, 0.0, 1.0),
+    };
+}
+
+/* The codes are spread, so that some between them are not used. */
+static void next_palette(struct source *source, struct arguments *a)
+{
+    const int64_t n_materials = 1 + next_byte(source) % 3, spread = 1 + next_byte(source) % 4;
+    a->n_codes = (int32_t)(n_materials * spread + 1);
+    a->palette = exactly(a->n_codes, sizeof *a->palette);
+    memset(a->palette, 0, (size_t)a->n_codes * sizeof *a->palette);
+    for (int64_t i = 1; i <= n_materials; i++) a->palette[i * spread] = next_material(source);
+}
+
+/* The number of cells, or 0 if no model may have so many. */
+static int64_t cells_of(const struct vox_settings *s)
+{
+    const int64_t sides[] = {s->nx, s->ny, s->nz};
+    int64_t cells = 1;
+    for (int i = 0; i < 3; i++) {
+        if (sides[i] < 1 || sides[i] > VOX_MAX_CELLS / cells) return 0;
+        cells *= sides[i];
+    }
+    return cells;
+}
+
+static void next_canvas(struct source *source, struct vox_settings *s)
+{
+    s->nx = next_count(source, 1, 6);
+    s->ny = next_count(source, 1, 6);
+    s->nz = next_count(source, 1, 6);
+    s->voxel_size = next_scale(source, 1e-3, 1.0);
+}
+
+/* Durations are counted in time steps of the last material, so that there are some, and not too many. */
+static void next_times(struct source *source, const struct vox_material *material, struct vox_settings *s)
+{
+    s->time_step_fraction = next_number(source, 0.05, 1.0);
+    const double stiffness = material->youngs_modulus / material->density;
+    const double guess = s->time_step_fraction * s->voxel_size / (6.2832 * sqrt(stiffness));
+    const double unit = isfinite(guess) && guess > 0.0 ? guess : 1e-3;
+    s->substeps = next_count(source, 1, 3);
+    s->duration = unit * next_number(source, 1.0, 120.0);
+    s->step_limit = next_byte(source) < 250 ? 10000 : next_count(source, 0, 100);
+    s->temperature_amplitude = next_number(source, -60.0, 60.0);
+    s->period = unit * next_scale(source, 1.0, 1000.0);
+    s->start_time = unit * next_number(source, 0.0, 60.0);
+    s->ramp = unit * next_number(source, 0.0, 60.0);
+}
+
+static void next_surroundings(struct source *source, struct vox_settings *s)
+{
+    const uint8_t switches = next_byte(source);
+    s->floor = switches & 1 ? (switches & 16 ? INT32_MIN : 1) : 0;
+    s->self_collision = switches & 2 ? 1 : 0;
+    s->contact_friction = switches & 4 ? 1 : 0;
+    s->complete_contacts = switches & 8 ? 1 : 0;
+    s->gravity = next_number(source, -100.0, 30.0);
+    s->floor_slope = next_number(source, -60.0, 60.0);
+    s->fluid_drag = next_number(source, 0.0, 2000.0);
+}
+
+static void next_dampings(struct source *source, struct vox_settings *s)
+{
+    s->bond_damping = next_number(source, 0.0, 3.0);
+    s->slow_damping = next_number(source, 0.0, 0.5);
+    s->floor_damping = next_number(source, 0.0, 2.0);
+    s->contact_damping = next_number(source, 0.0, 2.0);
+}
+
+static void next_limits(struct source *source, struct vox_settings *s)
+{
+    s->collision_envelope = next_number(source, 1.0, 2.0);
+    s->collision_horizon = next_number(source, 1.0, 4.0);
+    s->collision_list_factor = next_number(source, 1.0, 2.0);
+    s->largest_strain = next_scale(source, 100.0, 0.01);
+    s->largest_distance = next_scale(source, 100.0, 0.01);
+}
+
+/* NULL, one end held, or a pattern of bits, which sometimes has bits that do not exist. */
+static uint8_t *next_fixed(struct source *source, const struct arguments *a)
+{
+    const uint8_t kind = next_byte(source);
+    if (kind < 64 || a->cells == 0) return NULL;
+    uint8_t *fixed = exactly(a->cells, 1), pattern[8];
+    const uint8_t bits = kind == 255 ? 255 : VOX_FIX_ALL;
+    for (size_t i = 0; i < sizeof pattern; i++) pattern[i] = kind < 128 ? 0 : next_byte(source) & bits;
+    for (int64_t cell = 0; cell < a->cells; cell++)
+        fixed[cell] = kind < 128 ? (cell % a->settings.nx == 0 ? VOX_FIX_ALL : 0) : PICK(pattern, cell);
+    return fixed;
+}
+
+/* ---- the batch -------------------------------------------------------------------------------------------- */
+
+/* A pattern of materials and one of phases is laid over each body. */
+static void next_body(struct source *source, const struct arguments *a, int64_t body)
+{
+    uint8_t codes[11];
+    double cycles[5];
+    const int64_t spread = a->n_codes > 2 ? a->n_codes - 1 : 1;
+    const size_t length = 1 + next_byte(source) % sizeof codes;
+    for (size_t i = 0; i < length; i++) {
+        const uint8_t byte = next_byte(source);
+        codes[i] = (uint8_t)(byte < 160 ? spread : byte < 250 ? byte % a->n_codes : byte);
+    }
+    for (size_t i = 0; i < 5; i++) cycles[i] = next_number(source, -1.0, 1.0);
+    for (int64_t cell = 0; cell < a->cells; cell++) {
+        a->material[body * a->cells + cell] = codes[(size_t)cell % length];
+        a->phases[body * a->cells + cell] = PICK(cycles, cell);
+    }
+}
+
+static void next_bodies(struct source *source, struct arguments *a)
+{
+    a->n_bodies = a->cells > MOST_CELLS ? 0 : next_byte(source) % (MOST_BODIES + 1);
+    a->n_samples = next_byte(source) % (MOST_SAMPLES + 1);
+    a->material = exactly(a->n_bodies * a->cells, 1);
+    a->phases = exactly(a->n_bodies * a->cells, sizeof *a->phases);
+    for (int64_t body = 0; body < a->n_bodies; body++) next_body(source, a, body);
+}
+
+/* Steps that ascend up to those that each body has; rarely they do not, or there are more. */
+static void next_samples(struct source *source, struct arguments *a, const int64_t *steps)
+{
+    const bool anything = next_byte(source) > 240;
+    a->samples = exactly(a->n_bodies * a->n_samples, sizeof *a->samples);
+    for (int64_t body = 0; body < a->n_bodies; body++) {
+        int64_t step = -1;
+        for (int64_t i = 0; i < a->n_samples; i++) {
+            const int64_t last = steps[body] + 1 - a->n_samples + i; /* which leaves steps for the rest */
+            const bool ascend = !anything && step >= -1 && step < last;
+            const int64_t more = ascend ? 1 + next_byte(source) % (last - step) : next_count(source, 0, 40);
+            step = (int64_t)((uint64_t)step + (uint64_t)more); /* may well overflow */
+            a->samples[body * a->n_samples + i] = step;
+        }
+    }
+}
+
+/* All but the samples, which depend on the model. */
+static struct arguments next_arguments(struct source *source)
+{
+    struct arguments a = {0};
+    const uint8_t fault = next_byte(source);
+    a.fault = fault < 224 ? NO_FAULT : (enum fault)(fault % N_FAULTS);
+    if (a.fault == MEMORY_FOR_MODEL || a.fault == MEMORY_FOR_BODIES) a.fail_at = next_byte(source) % 24;
+    next_palette(source, &a);
+    next_canvas(source, &a.settings);
+    a.cells = cells_of(&a.settings);
+    next_times(source, &a.palette[a.n_codes - 1], &a.settings);
+    next_surroundings(source, &a.settings);
+    next_dampings(source, &a.settings);
+    next_limits(source, &a.settings);
+    a.fixed = next_fixed(source, &a);
+    a.wanted = next_byte(source) ^ 0xffu;
+    next_bodies(source, &a);
+    return a;
+}
+
+static void arguments_destroy(struct arguments *a)
+{
+    free(a->palette);
+    free(a->fixed);
+    free(a->material);
+    free(a->phases);
+    free(a->samples);
+}
+
+#endif

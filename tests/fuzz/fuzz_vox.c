@@ -1,0 +1,438 @@
+/* libFuzzer on the C interface of libvox: see docs/fuzzing.md.
+ *
+ * The sanitizers see every read and write out of place. What they cannot see is checked here, and ends the program:
+ * statuses and culprits within their ranges, buffers untouched by a call that was refused, samples that are finite up
+ * to a divergence and NaN after it, held voxels that stay, and a body whose results do not depend on the rest of the
+ * batch.
+ *
+ * The solver is compiled with these allocators, so that any of its allocations can be made to fail.
+ */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "decode.h"
+
+enum { CANARY = 0x5a };
+
+static const double MOST_WORK = 5000.0; /* voxels times steps */
+
+static const int64_t WIDTHS[N_TRACKS] = {3, 3, 3, 0, 2, 2, 6}; /* doubles a sample; 0: three for each cell */
+enum track { TIP, FACE, BODY, VOXELS, ENERGY, STRAIN, MOMENTUM };
+
+/* ---- allocations ------------------------------------------------------------------------------------------ */
+
+static int64_t allocations_left = -1; /* -1: any number */
+
+static bool fails(void)
+{
+    if (allocations_left > 0) allocations_left--;
+    return allocations_left == 0;
+}
+
+void *fuzz_malloc(size_t size);
+void *fuzz_calloc(size_t count, size_t size);
+
+void *fuzz_malloc(size_t size)
+{
+    return fails() ? NULL : malloc(size);
+}
+
+void *fuzz_calloc(size_t count, size_t size)
+{
+    return fails() ? NULL : calloc(count, size);
+}
+
+/* ---- verdicts --------------------------------------------------------------------------------------------- */
+
+#define CHECK(condition) check((condition), #condition, __LINE__)
+
+/* For a person who looks at a failure. */
+static const struct arguments *at_hand;
+static struct place {
+    unsigned track;
+    int64_t step, diverged;
+    const double *values;
+    int64_t n;
+} at_hand_place;
+
+static void explain(const struct arguments *a)
+{
+    const struct vox_settings *s = &a->settings;
+    fprintf(stderr, "canvas %" PRId64 " %" PRId64 " %" PRId64 ", voxel_size %g, time_step_fraction %g, substeps %" PRId64
+            ", duration %g, step_limit %" PRId64 "\n", s->nx, s->ny, s->nz, s->voxel_size, s->time_step_fraction,
+            s->substeps, s->duration, s->step_limit);
+    fprintf(stderr, "temperature_amplitude %g, period %g, start_time %g, ramp %g\n", s->temperature_amplitude, s->period,
+            s->start_time, s->ramp);
+    fprintf(stderr, "gravity %g, floor %d, slope %g, drag %g, damping: bond %g, slow %g, floor %g, contact %g\n",
+            s->gravity, s->floor, s->floor_slope, s->fluid_drag, s->bond_damping, s->slow_damping, s->floor_damping,
+            s->contact_damping);
+    fprintf(stderr, "collision: self %d, friction %d, complete %d, envelope %g, horizon %g, list factor %g\n",
+            s->self_collision, s->contact_friction, s->complete_contacts, s->collision_envelope, s->collision_horizon,
+            s->collision_list_factor);
+    fprintf(stderr, "largest_strain %g, largest_distance %g\n", s->largest_strain, s->largest_distance);
+    for (int32_t code = 0; code < a->n_codes; code++) {
+        const struct vox_material *m = &a->palette[code];
+        if (m->used)
+            fprintf(stderr, "material %d: E %g, nu %g, rho %g, expansion %g, friction %g %g\n", code, m->youngs_modulus,
+                    m->poisson_ratio, m->density, m->expansion, m->static_friction, m->dynamic_friction);
+    }
+    fprintf(stderr, "fault %d, bodies %" PRId64 ", samples %" PRId64 ", tracks %#x\n", a->fault, a->n_bodies,
+            a->n_samples, a->wanted);
+    const struct place *p = &at_hand_place;
+    fprintf(stderr, "track %u after step %" PRId64 ", diverged at step %" PRId64 ":", p->track, p->step, p->diverged);
+    for (int64_t i = 0; i < p->n && i < 12; i++) fprintf(stderr, " %g", p->values[i]);
+    fprintf(stderr, "\n");
+}
+
+static void check(bool fine, const char *condition, int line)
+{
+    if (fine) return;
+    fprintf(stderr, "fuzz_vox.c:%d: libvox broke its promise: %s\n", line, condition);
+    explain(at_hand);
+    abort();
+}
+
+static bool same(const double *a, const double *b, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        if (!(a[i] == b[i] || (isnan(a[i]) && isnan(b[i])))) return false;
+    return true;
+}
+
+static bool all_finite(const double *values, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        if (!isfinite(values[i])) return false;
+    return true;
+}
+
+static bool all_nan(const double *values, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        if (!isnan(values[i])) return false;
+    return true;
+}
+
+static void check_status(enum vox_status status, int64_t culprit, const struct arguments *a)
+{
+    CHECK(status >= VOX_OK && status <= VOX_SAMPLE_OUT_OF_RANGE);
+    CHECK(vox_status_message(status)[0] != '\0');
+    if (status == VOX_OK || (status >= VOX_NULL_ARGUMENT && status < VOX_BAD_PALETTE)) CHECK(culprit == -1);
+    if (status >= VOX_BAD_PALETTE && status < VOX_BAD_FIXED) CHECK(culprit >= -1 && culprit < a->n_codes);
+    if (status == VOX_BAD_FIXED) CHECK(culprit >= 0 && culprit < a->cells);
+    if (status >= VOX_BAD_BATCH) CHECK(culprit >= -1 && culprit < a->n_bodies);
+    if (status > VOX_BAD_BATCH) CHECK(culprit >= 0);
+}
+
+/* ---- calls ------------------------------------------------------------------------------------------------ */
+
+/* NULL if the arguments were refused. */
+static vox_model *make(const struct arguments *a)
+{
+    vox_model *model = NULL;
+    int64_t culprit = -2;
+    const enum fault fault = a->fault;
+    const int32_t n_codes = fault == ABSURD_CODES ? (int32_t)PICK(ABSURD, a->wanted) : a->n_codes;
+    const bool absurd = n_codes < 1 || n_codes > VOX_MAX_CODES;
+    if (fault == MEMORY_FOR_MODEL) allocations_left = a->fail_at;
+    const enum vox_status status = vox_model_create(fault == NO_SETTINGS ? NULL : &a->settings,
+                                                    fault == NO_PALETTE ? NULL : a->palette,
+                                                    absurd ? n_codes : a->n_codes, a->fixed,
+                                                    fault == NO_PLACE_FOR_MODEL ? NULL : &model,
+                                                    fault == NO_CULPRIT ? NULL : &culprit);
+    allocations_left = -1;
+    CHECK((model != NULL) == (status == VOX_OK));
+    if (fault == NO_SETTINGS || fault == NO_PALETTE || fault == NO_PLACE_FOR_MODEL)
+        CHECK(status == VOX_NULL_ARGUMENT);
+    if (fault != NO_CULPRIT && fault != NO_PLACE_FOR_MODEL) check_status(status, culprit, a);
+    if (absurd || a->cells == 0) CHECK(status != VOX_OK);
+    CHECK(status < VOX_BAD_BATCH);
+    return model;
+}
+
+/* False if a body was refused; its steps are then not known. */
+static bool count_steps(const vox_model *model, const struct arguments *a, double *dt, int64_t *steps)
+{
+    int64_t culprit = -2;
+    const enum vox_status status = vox_time_steps(model, a->n_bodies, a->material, dt, steps, &culprit);
+    check_status(status, culprit, a);
+    CHECK(vox_time_steps(model, a->n_bodies, a->material, NULL, NULL, NULL) == status);
+    if (status != VOX_OK) return false;
+    for (int64_t body = 0; body < a->n_bodies; body++) {
+        CHECK(isfinite(dt[body]) && dt[body] > 0.0);
+        CHECK(steps[body] >= 1 && steps[body] <= a->settings.step_limit);
+        CHECK(steps[body] % a->settings.substeps == 0);
+    }
+    return true;
+}
+
+static int64_t width_of(enum track track, const struct arguments *a)
+{
+    return track == VOXELS ? 3 * a->cells : WIDTHS[track];
+}
+
+/* What a call writes. */
+struct outcome {
+    double *tracks[N_TRACKS]; /* NULL if not wanted */
+    int64_t *diverged;
+    enum vox_status status;
+    int64_t culprit;
+};
+
+static struct outcome outcome_create(const struct arguments *a, unsigned wanted)
+{
+    struct outcome out = {.culprit = -2};
+    for (unsigned track = 0; track < N_TRACKS; track++) {
+        if (!(wanted >> track & 1)) continue;
+        const int64_t length = a->n_bodies * a->n_samples * width_of(track, a);
+        out.tracks[track] = exactly(length, sizeof(double));
+        memset(out.tracks[track], CANARY, (size_t)length * sizeof(double));
+    }
+    out.diverged = exactly(a->n_bodies, sizeof *out.diverged);
+    memset(out.diverged, CANARY, (size_t)a->n_bodies * sizeof *out.diverged);
+    return out;
+}
+
+static void outcome_destroy(struct outcome *out)
+{
+    for (int track = 0; track < N_TRACKS; track++) free(out->tracks[track]);
+    free(out->diverged);
+}
+
+static bool is_untouched(const void *place, int64_t length)
+{
+    const uint8_t *bytes = place;
+    for (int64_t i = 0; i < length; i++)
+        if (bytes[i] != CANARY) return false;
+    return true;
+}
+
+static bool outcome_is_untouched(const struct outcome *out, const struct arguments *a)
+{
+    bool fine = is_untouched(out->diverged, a->n_bodies * (int64_t)sizeof *out->diverged);
+    for (unsigned track = 0; track < N_TRACKS; track++) {
+        const int64_t length = a->n_bodies * a->n_samples * width_of(track, a);
+        if (out->tracks[track]) fine &= is_untouched(out->tracks[track], length * (int64_t)sizeof(double));
+    }
+    return fine;
+}
+
+static struct outcome simulate(const vox_model *model, const struct arguments *a, unsigned wanted)
+{
+    const enum fault fault = a->fault;
+    struct outcome out = outcome_create(a, wanted);
+    const struct vox_tracks tracks = {out.tracks[TIP],    out.tracks[FACE],   out.tracks[BODY],    out.tracks[VOXELS],
+                                      out.tracks[ENERGY], out.tracks[STRAIN], out.tracks[MOMENTUM]};
+    if (fault == MEMORY_FOR_BODIES) allocations_left = a->fail_at;
+    out.status = vox_simulate(fault == NO_MODEL ? NULL : model, a->n_bodies, fault == NO_MATERIAL ? NULL : a->material,
+                              fault == NO_PHASES ? NULL : a->phases, a->n_samples,
+                              fault == NO_SAMPLE_STEPS ? NULL : a->samples, fault == NO_TRACKS ? NULL : &tracks,
+                              fault == NO_DIVERGED_STEP ? NULL : out.diverged, fault == NO_CULPRIT ? NULL : &out.culprit);
+    allocations_left = -1;
+    if (fault != NO_CULPRIT) check_status(out.status, out.culprit, a);
+    if (out.status != VOX_OK && out.status != VOX_NO_MEMORY) CHECK(outcome_is_untouched(&out, a));
+    return out;
+}
+
+/* Numbers of bodies or samples for which no array could be long enough. */
+static void call_with_absurd_numbers(const vox_model *model, const struct arguments *a)
+{
+    const int64_t numbers[] = {-1, INT64_MIN, INT64_MAX, INT64_C(1) << 61};
+    const int64_t absurd = PICK(numbers, a->wanted);
+    const bool bodies = a->fault == ABSURD_BODIES;
+    if (!bodies && a->n_bodies == 0 && absurd > 0) return; /* no bodies have any number of samples */
+    struct outcome out = outcome_create(a, ~0u);
+    const struct vox_tracks tracks = {out.tracks[TIP],    out.tracks[FACE],   out.tracks[BODY],    out.tracks[VOXELS],
+                                      out.tracks[ENERGY], out.tracks[STRAIN], out.tracks[MOMENTUM]};
+    out.status = vox_simulate(model, bodies ? absurd : a->n_bodies, a->material, a->phases,
+                              bodies ? a->n_samples : absurd, a->samples, &tracks, out.diverged, &out.culprit);
+    CHECK(out.status == VOX_BAD_BATCH && out.culprit == -1);
+    CHECK(vox_status_message(out.status)[0] != '\0' && vox_status_message((enum vox_status)1000)[0] != '\0');
+    if (bodies) CHECK(vox_time_steps(model, absurd, a->material, NULL, NULL, NULL) == VOX_BAD_BATCH);
+    CHECK(outcome_is_untouched(&out, a));
+    outcome_destroy(&out);
+}
+
+/* ---- what is promised ------------------------------------------------------------------------------------- */
+
+/* The voxels of one body at one time. */
+static void check_voxels(const struct arguments *a, int64_t body, const double *positions)
+{
+    const double edge = a->settings.voxel_size;
+    for (int64_t cell = 0; cell < a->cells; cell++) {
+        const double *position = positions + 3 * cell;
+        const int64_t place[] = {cell % a->settings.nx, cell / a->settings.nx % a->settings.ny,
+                                 cell / a->settings.nx / a->settings.ny};
+        if (!a->material[body * a->cells + cell]) {
+            CHECK(all_nan(position, 3));
+            continue;
+        }
+        CHECK(all_finite(position, 3));
+        for (int axis = 0; axis < 3; axis++)
+            if (a->fixed && a->fixed[cell] >> axis & 1)
+                CHECK(fabs(position[axis] - edge * ((double)place[axis] + 0.5)) <= 1e-12 * edge);
+    }
+}
+
+static void check_sample(const struct arguments *a, const struct outcome *out, int64_t body, int64_t sample)
+{
+    const int64_t row = body * a->n_samples + sample;
+    const bool gone = out->diverged[body] > 0 && a->samples[row] >= out->diverged[body];
+    for (unsigned track = 0; track < N_TRACKS; track++) {
+        if (!out->tracks[track]) continue;
+        const int64_t width = width_of(track, a);
+        const double *values = out->tracks[track] + row * width;
+        at_hand_place = (struct place){track, a->samples[row], out->diverged[body], values, width};
+        if (gone) CHECK(all_nan(values, width));
+        else if (track == VOXELS) check_voxels(a, body, values);
+        else CHECK(all_finite(values, width));
+        if (!gone && track == STRAIN) CHECK(values[0] <= values[1]);
+        if (!gone && track == ENERGY) CHECK(values[1] >= 0.0);
+    }
+}
+
+static void check_outcome(const struct arguments *a, const struct outcome *out, const int64_t *steps)
+{
+    for (int64_t body = 0; body < a->n_bodies; body++) {
+        CHECK(out->diverged[body] >= 0 && out->diverged[body] <= steps[body]);
+        for (int64_t sample = 0; sample < a->n_samples; sample++) check_sample(a, out, body, sample);
+    }
+}
+
+/* One body's part of a batch; its arrays are copies of exactly their size. */
+static struct arguments alone(const struct arguments *a, int64_t body, int64_t n_samples)
+{
+    struct arguments one = *a;
+    one.n_bodies = 1;
+    one.n_samples = n_samples;
+    one.material = exactly(a->cells, 1);
+    one.phases = exactly(a->cells, sizeof *one.phases);
+    one.samples = n_samples > 0 ? exactly(n_samples, sizeof *one.samples) : NULL;
+    memcpy(one.material, a->material + body * a->cells, (size_t)a->cells);
+    memcpy(one.phases, a->phases + body * a->cells, (size_t)a->cells * sizeof *one.phases);
+    if (one.samples) memcpy(one.samples, a->samples + body * a->n_samples, (size_t)n_samples * sizeof *one.samples);
+    return one;
+}
+
+static void alone_destroy(struct arguments *one)
+{
+    free(one->material);
+    free(one->phases);
+    free(one->samples);
+}
+
+/* Alone and with every track, a body does the same as in its batch. */
+static void check_alone(const vox_model *model, const struct arguments *a, const struct outcome *all, int64_t body,
+                        const int64_t *steps)
+{
+    struct arguments one = alone(a, body, a->n_samples);
+    struct outcome out = simulate(model, &one, ~0u);
+    CHECK(out.status == VOX_OK);
+    CHECK(out.diverged[0] == all->diverged[body]);
+    check_outcome(&one, &out, &steps[body]);
+    for (unsigned track = 0; track < N_TRACKS; track++) {
+        const int64_t length = a->n_samples * width_of(track, a);
+        if (all->tracks[track]) CHECK(same(all->tracks[track] + body * length, out.tracks[track], length));
+    }
+    outcome_destroy(&out);
+    alone_destroy(&one);
+}
+
+/* Nor does it matter what is looked at. */
+static void check_unseen(const vox_model *model, const struct arguments *a, const struct outcome *all, int64_t body)
+{
+    struct arguments one = alone(a, body, 0);
+    struct outcome out = simulate(model, &one, 0);
+    CHECK(out.status == VOX_OK);
+    CHECK(out.diverged[0] == all->diverged[body]);
+    outcome_destroy(&out);
+    alone_destroy(&one);
+}
+
+/* A body that is named as the reason is refused alone too, for the same reason. */
+static void check_culprit(const vox_model *model, const struct arguments *a, const struct outcome *all)
+{
+    struct arguments one = alone(a, all->culprit, a->n_samples);
+    struct outcome out = simulate(model, &one, 0);
+    CHECK(out.status == all->status && out.culprit == 0);
+    outcome_destroy(&out);
+    alone_destroy(&one);
+}
+
+static void check_missing(const struct arguments *a, enum vox_status status)
+{
+    const enum fault fault = a->fault;
+    const bool any = a->n_bodies > 0;
+    if (fault == NO_MODEL || (any && (fault == NO_MATERIAL || fault == NO_PHASES || fault == NO_DIVERGED_STEP)) ||
+        (any && fault == NO_SAMPLE_STEPS && a->n_samples > 0))
+        CHECK(status == VOX_NULL_ARGUMENT);
+}
+
+static void run(const vox_model *model, struct arguments *a, const int64_t *steps)
+{
+    struct outcome out = simulate(model, a, a->wanted);
+    check_missing(a, out.status);
+    const bool whole = a->fault == NO_FAULT || a->fault == ABSURD_CODES;
+    if (out.status == VOX_OK && whole) {
+        check_outcome(a, &out, steps);
+        for (int64_t body = 0; body < a->n_bodies; body++) {
+            check_alone(model, a, &out, body, steps);
+            check_unseen(model, a, &out, body);
+        }
+    }
+    if (out.status > VOX_BAD_BATCH && whole) check_culprit(model, a, &out);
+    outcome_destroy(&out);
+}
+
+/* ---- the entry point -------------------------------------------------------------------------------------- */
+
+static double work_of(const struct arguments *a, const int64_t *steps)
+{
+    double work = 0.0;
+    for (int64_t body = 0; body < a->n_bodies; body++)
+        for (int64_t cell = 0; cell < a->cells; cell++)
+            work += a->material[body * a->cells + cell] ? (double)steps[body] : 0.0;
+    return work;
+}
+
+/* A model and the steps of its bodies. Where they are too many, the model is made again for a shorter time. */
+static vox_model *make_affordable(struct arguments *a, double *dt, int64_t *steps, bool *known)
+{
+    *known = false;
+    for (int attempt = 0; attempt < 2; attempt++) {
+        vox_model *model = make(a);
+        if (!model || a->cells > MOST_CELLS || !(*known = count_steps(model, a, dt, steps))) return model;
+        const double work = work_of(a, steps);
+        if (work <= MOST_WORK) return model;
+        vox_model_destroy(model);
+        a->settings.duration *= 0.9 * MOST_WORK / work;
+    }
+    return NULL;
+}
+
+static void fuzz(struct source *source, struct arguments *a)
+{
+    double dt[MOST_BODIES];
+    int64_t steps[MOST_BODIES] = {0};
+    bool known;
+    vox_model *model = make_affordable(a, dt, steps, &known);
+    if (model && a->cells <= MOST_CELLS) {
+        next_samples(source, a, steps);
+        if (a->fault == ABSURD_BODIES || a->fault == ABSURD_SAMPLES) call_with_absurd_numbers(model, a);
+        else run(model, a, steps);
+        if (!known) CHECK(a->n_bodies > 0);
+    }
+    vox_model_destroy(model);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct source source = {data, size};
+    struct arguments arguments = next_arguments(&source);
+    at_hand = &arguments;
+    fuzz(&source, &arguments);
+    arguments_destroy(&arguments);
+    return 0;
+}
