@@ -20,7 +20,7 @@ KERNEL: Final = "scalar"
 """Name of the implementation that computes, to be recorded with its results."""
 
 FIX_ALL: Final = 63
-"""All six degrees of freedom of a voxel: the bits 1, 2, 4 for its position along x, y, z and 8, 16, 32 for its
+"""All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its
 rotation about them."""
 
 Track = Literal["tip", "face", "body", "voxels", "energy", "strain", "momentum"]
@@ -68,15 +68,15 @@ class Settings:
         floor: Whether there is one: the plane z = 0, or z = x tan(floor_slope). Its push is vertical all the
             same.
         floor_slope: Degrees, from -89 to 89.
-        fluid_drag: Half the density of the surrounding fluid times its drag coefficient, kg/m3: a facet of the
-            outer surface is pushed back with this times its area and the square of its speed along its normal.
+        fluid_drag: Half the density of the surrounding fluid times its drag coefficient, kg/m3. A facet of
+            the outer surface is pushed back with this times its area and the square of its normal speed.
         time_step_fraction: Of the largest stable time step; above 0, at most 1.
         substeps: How many steps each such time step is made in; the number of steps is a multiple of it.
         bond_damping: Damping of bonds, as a fraction of critical.
         slow_damping: Damping of all motion against the ground, as a fraction of critical.
         floor_damping: Damping of the floor's push, as a fraction of critical.
-        contact_damping: Damping of the push between voxels that touch, as a fraction of critical; the original
-            engine has none. It never does more than end the approach within one step.
+        contact_damping: Damping of the push between voxels that touch, as a fraction of critical; none in the
+            original engine. It never does more than end the approach within one step.
         self_collision: Whether the voxels of a body repel each other.
         contact_friction: Whether they brake each other too, with the mean of their dynamic frictions; the
             original engine does not.
@@ -208,7 +208,9 @@ class Model:
         _check_batch(status, culprit[0])
         return dt, steps
 
-    def steps_at(self, material: ArrayLike, times: Sequence[float] | NDArray[np.float64]) -> NDArray[np.int64]:
+    def steps_at(
+        self, material: ArrayLike, times: Sequence[float] | NDArray[np.float64]
+    ) -> NDArray[np.int64]:
         """Return the steps after which each body of a batch is first at or past given times.
 
         Args:
@@ -224,7 +226,9 @@ class Model:
         wanted = _array("times", times, np.float64, (-1,))
         outside = wanted[~((wanted >= 0.0) & (wanted <= self.settings.duration))]
         if outside.size:
-            raise ValueError(f"times must be from 0 to the duration {self.settings.duration} s, got {outside[0]}")
+            raise ValueError(
+                f"times must be from 0 to the duration {self.settings.duration} s, got {outside[0]}"
+            )
         dt, _ = self.time_steps(material)
         return np.ceil(wanted / dt[:, None] * (1.0 - _ROUNDING)).astype(np.int64)
 
