@@ -164,12 +164,15 @@ def verification_from_json(document: Any) -> Verification:
     if document.get("format") is True or document.get("format") != _FORMAT:
         raise ValueError(f"format {document.get('format')!r}, but this evoframe reads format {_FORMAT}")
     try:
-        unchanged, *findings = [_finding(row) for row in document["variants"]]
-        [first] = unchanged.scores
-        verification = Verification(first, tuple(findings), document["unit"], document["score"])
+        rows = [_finding(row) for row in document["variants"]]
+        if not rows or len(rows[0].scores) != 1:
+            raise ValueError("expected one score of the unchanged design")  # noqa: TRY301 - as all others
+        verification = Verification(rows[0].scores[0], tuple(rows[1:]), document["unit"], document["score"])
         same = verification.to_json() == document
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"not as evoframe writes it: {type(error).__name__}: {error}") from error
+    except ValueError as error:
+        raise ValueError(f"not as evoframe writes it: {error}") from error
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ValueError("not as evoframe writes it: its rows are damaged") from error
     if not same:
         raise ValueError("not as evoframe writes it: its figures do not follow from its scores")
     return verification

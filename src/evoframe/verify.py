@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from evoframe.plugins import Plugins
 from evoframe.run import keep_verification, verified
 from evoframe.verification import Verification
 
-__all__ = ["verify", "verify_job"]
+__all__ = ["keep_of_job", "verify", "verify_job"]
 
 
 def verify(
@@ -44,20 +45,30 @@ def verify(
     """
     path = source.directory if isinstance(source, Run) else Path(source)
     overrides = layers_of({**settings, "executor.workers": workers})
-    return verify_job(read_job(path, preset, overrides, plugins or discover(), runs=True))
+    job = read_job(path, preset, overrides, plugins or discover(), runs=True)
+    verifications = verify_job(job)
+    keep_of_job(job, verifications)
+    return verifications
 
 
 def verify_job(job: Job) -> list[Verification]:
-    """Verify the designs of a job; that of a run, simulated as it was, is kept in its directory.
+    """Verify the designs of a job.
 
     Raises:
         ConfigurationError: The simulator offers no variants.
         InputError: The simulator cannot simulate a design.
-        RunError: The verification cannot be made or kept.
+        RunError: The verification cannot be made.
     """
     with naming(job.path):
-        verifications = verified(job.config, job.designs, job.score)
+        return verified(job.config, job.designs, job.score)
+
+
+def keep_of_job(job: Job, verifications: Sequence[Verification]) -> None:
+    """Keep the verification of a run, simulated as it was, in its directory; of other jobs nothing is kept.
+
+    Raises:
+        RunError: It cannot be kept.
+    """
     if job.run is not None and job.score is not None:
         [verification] = verifications
         keep_verification(job.run.directory, verification)
-    return verifications

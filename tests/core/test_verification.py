@@ -140,10 +140,13 @@ class TestJson:
             (lambda d: {"format": 1}, "this JSON is no verification of evoframe"),
             (lambda d: {**d, "format": 2}, "format 2, but this evoframe reads format 1"),
             (lambda d: {**d, "format": True}, "format True, but"),
-            (lambda d: {**d, "variants": []}, "not as evoframe writes it: ValueError"),
-            (lambda d: {**d, "variants": 7}, "not as evoframe writes it: TypeError"),
-            (lambda d: {**d, "variants": [None]}, "not as evoframe writes it: TypeError"),
-            (lambda d: {key: d[key] for key in d if key != "unit"}, "not as evoframe writes it: KeyError"),
+            (lambda d: {**d, "variants": []}, "not as evoframe writes it: expected one score"),
+            (lambda d: {**d, "variants": 7}, "not as evoframe writes it: its rows are damaged"),
+            (lambda d: {**d, "variants": [None]}, "not as evoframe writes it: its rows are damaged"),
+            (
+                lambda d: {key: d[key] for key in d if key != "unit"},
+                "not as evoframe writes it: its rows are damaged",
+            ),
             (
                 lambda d: with_draw(d, score="high"),
                 "expected a score or the step of a divergence, found 'high'",

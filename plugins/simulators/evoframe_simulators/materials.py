@@ -72,13 +72,8 @@ def check_palette(_: Any, __: Any, palette: Sequence[PaletteMaterial]) -> None:
 
 
 def materials_of(vox: Vox) -> dict[int, PaletteMaterial]:
-    """Return the material of each code that a body may have.
-
-    Raises:
-        ValueError: There is a palette, and an option that describes the built-in materials all the same.
-    """
+    """Return the material of each code that a body may have."""
     if vox.palette:
-        _check_built_in_options_are_left_alone(vox)
         return {material.code: material for material in vox.palette}
     options = {name: getattr(vox, name) for name in _BUILT_IN}
     passive = {**options, "expansion_coefficient": 0.0}
@@ -86,16 +81,6 @@ def materials_of(vox: Vox) -> dict[int, PaletteMaterial]:
         PASSIVE: PaletteMaterial(code=PASSIVE, name="passive", **passive),
         CONTRACTILE: PaletteMaterial(code=CONTRACTILE, name="contractile", **options),
     }
-
-
-def _check_built_in_options_are_left_alone(vox: Vox) -> None:
-    for name in _BUILT_IN:
-        default = attrs.fields_dict(type(vox))[name].default
-        if getattr(vox, name) != default:
-            raise ValueError(
-                f"{name} = {getattr(vox, name)} has no effect beside a palette, whose materials have "
-                f"their own; leave it at {default}"
-            )
 
 
 def described(materials: Mapping[int, PaletteMaterial]) -> str:

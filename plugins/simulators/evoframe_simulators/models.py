@@ -6,6 +6,7 @@ import functools
 import itertools
 from typing import TYPE_CHECKING
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from evoframe_simulators.vox import Vox
 
 __all__ = ["amplitude_of", "clocks_of", "model_of", "possible_clocks", "without_number"]
+
+_UNLIMITED = 2**63 - 1
 
 
 @functools.lru_cache(maxsize=16)
@@ -46,18 +49,26 @@ def possible_clocks(vox: Vox) -> list[Clock]:
     """Return every clock that a body can have: that of one pair of materials, or of one that has no bond.
 
     Raises:
-        ValueError: The solver cannot work with the settings; says what is wrong.
+        ValueError: The solver cannot work with the settings, or no body with a bond is done within the limit
+            of steps; says what is wrong.
     """
     palette = solver_palette(materials_of(vox))
-    distinct = {material: code for code, material in palette.items()}.values()
-    bars = list(itertools.combinations_with_replacement(sorted(distinct), 2))
-    bodies = [*bars, *((0, code) for code in sorted(distinct))]
-    free = libvox.Model((2, 1, 1), palette, _settings(vox), np.zeros((2, 1, 1), np.uint8))
+    distinct = sorted({material: code for code, material in palette.items()}.values())
+    bars = list(itertools.combinations_with_replacement(distinct, 2))
+    bodies = np.array([*bars, *((0, code) for code in distinct)], np.uint8).reshape(-1, 2, 1, 1)
+    unlimited = attrs.evolve(_settings(vox), step_limit=_UNLIMITED)
+    free = libvox.Model((2, 1, 1), palette, unlimited, np.zeros((2, 1, 1), np.uint8))
     try:
-        return clocks_of(vox, free, np.array(bodies, np.uint8).reshape(-1, 2, 1, 1))
+        clocks = clocks_of(vox, free, bodies)
     except ValueError as error:
-        words = without_number(error).replace("the body", "even a body of one or two voxels")
-        raise ValueError(words) from error
+        raise ValueError(without_number(error)) from error
+    fewest = min(clock.steps for clock in clocks[: len(bars)])
+    if fewest > vox.step_limit:
+        raise ValueError(
+            f"duration = {vox.duration} s takes {fewest} steps, more than step_limit = {vox.step_limit}; "
+            "simulate less time, or raise the limit"
+        )
+    return clocks
 
 
 def without_number(error: Exception) -> str:

@@ -63,8 +63,8 @@ class Vox:
         expansion_coefficient: Linear thermal expansion of a contractile voxel, 1/degree; 0 switches it off.
         static_friction: Of both materials on the floor: share of its push up to which a resting voxel sticks.
         dynamic_friction: Of both materials: share of a push that brakes a sliding voxel.
-        palette: If it has entries, they replace the two materials 1 (passive) and 3 (contractile): tables
-            with ``code``, the six values above, and perhaps ``name``.
+        palette: If it has entries, they replace the materials 1 (passive) and 3 (contractile), and the six
+            values above have no effect: tables with ``code``, these values, and perhaps ``name``.
         temperature_base: Degrees at which a voxel has its nominal size.
         temperature_amplitude: Highest temperature of the oscillation, degrees (the paper's engine counts from
             zero, so the swing is this less the base: 14.47 degrees, a linear strain of 0.1447).
@@ -87,7 +87,7 @@ class Vox:
         contact_friction: Whether voxels that touch brake each other; not in the paper's engine.
         time_step_fraction: Of the largest stable time step.
         substeps: Steps that each such step is made in; samples are taken at the same instants however many.
-        step_limit: A body that needs more steps is refused.
+        step_limit: A body that needs more steps is refused. One without bonds needs several times as many.
         bond_damping: Damping ratio of the bonds.
         slow_damping: Damping ratio against the ground.
         collision_damping: Damping ratio of the floor's push.
@@ -168,8 +168,10 @@ class Vox:
         Raises:
             InputError: A design is no body with a controller, or its record would be too large.
         """
+        materials = materials_of(self)
         for design in designs:
             check_design(design)
+            check_codes(design.roles[MORPHOLOGY], materials)
         outcomes: dict[int, Outcome] = {}
         for canvas, indices in _by_canvas(designs):
             try:

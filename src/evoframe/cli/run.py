@@ -85,8 +85,12 @@ def run(
     try:
         _verify(execution, quiet)
     except KeyboardInterrupt:
-        unverified = f"Interrupted; the run is complete and saved in {execution.directory}, but not verified"
-        click.echo(unverified, err=True)
+        directory = execution.directory
+        click.echo(
+            f"Interrupted; the run is complete and saved in {directory}, but not verified; "
+            f"evoframe verify {directory} does that",
+            err=True,
+        )
         ctx.exit(_INTERRUPTED)
 
 

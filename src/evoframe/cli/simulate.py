@@ -91,6 +91,7 @@ def _json(scores: list[Score]) -> str:
         {
             "displacement": [score.value for score in scores],
             "diverged": [score.value is None for score in scores],
+            "diverged_at": [score.diverged_at for score in scores],
         }
     )
 

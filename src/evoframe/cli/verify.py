@@ -20,7 +20,7 @@ from evoframe.evaluation import Score
 from evoframe.jobs import read_job
 from evoframe.layers import Layer
 from evoframe.verification import Finding, Verification
-from evoframe.verify import verify_job
+from evoframe.verify import keep_of_job, verify_job
 
 __all__ = ["verification_table", "verify"]
 
@@ -54,16 +54,19 @@ def verify(
     --set change how it is simulated. A FILE is what evoframe simulate takes.
     """
     jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True) for path in sources]
-    verified = [
-        (label, verification)
-        for job in jobs
-        for label, verification in zip(job.labels, verify_job(job), strict=True)
-    ]
+    found = [(job, verify_job(job)) for job in jobs]
+    labelled = [pair for job, verifications in found for pair in zip(job.labels, verifications, strict=True)]
     if as_json:
-        click.echo(json.dumps([{"body": label, **found.to_json()} for label, found in verified]))
-        return
+        click.echo(json.dumps([{"body": label, **each.to_json()} for label, each in labelled]))
+    else:
+        _print(labelled)
+    for job, verifications in found:  # what cannot be kept was seen at least
+        keep_of_job(job, verifications)
+
+
+def _print(labelled: list[tuple[str, Verification]]) -> None:
     console = output()
-    for label, verification in verified:
+    for label, verification in labelled:
         console.print(label, style="bold", soft_wrap=True)
         console.print(verification_table(verification))
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from evoframe import ConfigurationError, Design, InputError, Record, load_config
 from evoframe_simulators import FixedRegion, PaletteMaterial, Vox
+from evoframe_simulators.materials import materials_of
 from evoframe_simulators.models import possible_clocks
 from evoframe_simulators.regions import DEGREES_OF_FREEDOM, fixed_mask
 
@@ -81,7 +82,7 @@ class TestConfiguration:
             ("start_time=-1", ["simulator.start_time: must be >= 0.0"]),
             (
                 "step_limit=20",
-                ["simulator: even a body of one or two voxels needs more steps than step_limit"],
+                ["simulator: duration = 0.07 s takes 22 steps, more than step_limit = 20; simulate"],
             ),
             ("frequency=1e-60", ["simulator: ", "period must be"]),
             ("temperature_amplitude=1e60", ["simulator: ", "temperature_amplitude must be"]),
@@ -99,11 +100,11 @@ class TestPalette:
         with pytest.raises(ValueError, match="expected one material for each code, found 2 for 4"):
             Vox(palette=(material(4), material(2), material(4)))
 
-    def test_options_of_the_built_in_materials_beside_it_are_refused(self) -> None:
-        with pytest.raises(
-            ValueError, match=r"density = 1000\.0 has no effect beside a palette.* 1000000\.0$"
-        ):
-            Vox(palette=(material(1),), density=1000.0)
+    def test_it_stands_for_what_a_preset_says_of_the_built_in_materials(self) -> None:
+        assert materials_of(Vox(palette=(material(1),), density=1000.0)) == {1: material(1)}
+
+    def test_a_limit_of_steps_that_suffices_is_accepted(self) -> None:
+        assert Vox(step_limit=22).step_limit == 22
 
     def test_the_built_in_materials_are_one(self) -> None:
         palette = (material(1), material(3, expansion_coefficient=0.01))
@@ -115,7 +116,7 @@ class TestPalette:
     def test_only_its_codes_are_simulated(self) -> None:
         vox = Vox(palette=(material(200), material(7)))
         assert vox.simulate([bar(200, 7)], Record(("tip",)))[0].diverged_at is None
-        with pytest.raises(InputError, match="material code"):
+        with pytest.raises(InputError, match=r"^material has the code 1; codes: 0 empty, 7, 200$"):
             vox.simulate([bar(1, 7)], Record(("tip",)))
 
     def test_a_phase_counts_where_the_material_expands_or_contracts(self) -> None:

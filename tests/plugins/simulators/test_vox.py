@@ -177,7 +177,7 @@ def test_an_empty_body_counts_as_diverged_before_the_first_step() -> None:
             {"controller": np.zeros((3, 3, 3))},
             r"controller is float64\[3, 3, 3\]; expected float64\[4, 3, 3\]",
         ),
-        ({"morphology": np.full((4, 3, 3), 7, np.uint8)}, "material code"),
+        ({"morphology": np.full((4, 3, 3), 7, np.uint8)}, "material has the code 7; codes: 0 empty"),
         ({"controller": np.full((4, 3, 3), np.nan)}, "phase"),
     ],
 )
