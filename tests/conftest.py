@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import signal
+
 import hypothesis
+
+# A job in a shell's background ignores Ctrl-C, and so would the programs that tests start and interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # One profile everywhere: what fails in CI fails at home, with the same examples.
 hypothesis.settings.register_profile(
