@@ -142,7 +142,7 @@ struct pose {
     bool small;
 };
 
-static inline struct pose pose_of(const struct bond *bond, const struct voxel *lower, const struct voxel *upper)
+IN_LOOP struct pose pose_of(const struct bond *bond, const struct voxel *lower, const struct voxel *upper)
 {
     const enum axis axis = bond->axis;
     const double rest = 0.5 * (lower->size + upper->size);
@@ -167,7 +167,7 @@ static inline struct pose pose_of(const struct bond *bond, const struct voxel *l
 }
 
 /* False if the bond is stretched or compressed by more than `most`, or by a NaN. */
-static bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels, double most, double per_second)
+IN_LOOP bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels, double most, double per_second)
 {
     struct voxel *lower = &voxels[bond->lower], *upper = &voxels[bond->upper];
     const struct pose pose = pose_of(bond, lower, upper);

@@ -82,13 +82,13 @@ static void collide(const struct touch *touch, double dt)
 }
 
 /* The original engine's law. */
-static void repel(const struct touch *touch)
+IN_LOOP void repel(const struct touch *touch)
 {
     push_apart(touch, vec_scale(touch->coupling->stretch * touch->overlap, touch->towards));
 }
 
 /* Whether two listed voxels touch, and how. */
-static bool touches(const struct body *body, const struct contact *contact, struct touch *touch)
+IN_LOOP bool touches(const struct body *body, const struct contact *contact, struct touch *touch)
 {
     struct voxel *first = &body->voxels[contact->first], *second = &body->voxels[contact->second];
     const struct vec apart = vec_sub(second->position, first->position);

@@ -14,6 +14,13 @@
 #error "libvox computes the sizes of its arrays with 64 bits"
 #endif
 
+/* Inlined wherever it is called: part of a loop over all bonds or contacts. */
+#ifdef __GNUC__
+#define IN_LOOP static inline __attribute__((always_inline))
+#else
+#define IN_LOOP static inline
+#endif
+
 /* ---- vectors and quaternions ------------------------------------------------------------------------------ */
 
 struct vec {

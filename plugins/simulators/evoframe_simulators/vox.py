@@ -168,15 +168,15 @@ class Vox:
         Raises:
             InputError: A design is no body with a controller, or its record would be too large.
         """
-        materials = materials_of(self)
         for design in designs:
             check_design(design)
-            check_codes(design.roles[MORPHOLOGY], materials)
         outcomes: dict[int, Outcome] = {}
         for canvas, indices in _by_canvas(designs):
             try:
                 outcomes |= self._simulate(canvas, {index: designs[index] for index in indices}, record)
             except ValueError as error:  # the solver's words for what cells hold
+                for index in indices:  # it does not say which code it does not know
+                    check_codes(designs[index].roles[MORPHOLOGY], materials_of(self))
                 raise InputError(without_number(error)) from error
         return [
             outcomes[index] if index in outcomes else _nothing(design, record)
