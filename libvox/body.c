@@ -1,32 +1,45 @@
 /* From cells with materials to voxels and bonds (sections 2, 3 and 8). */
 #include <stdlib.h>
+#include <string.h>
 
 #include "internal.h"
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
+static const size_t LINE = 64;                             /* bytes of the processor's cache, at most */
 
-int64_t cell_beside(const vox_model *model, int64_t cell, enum axis axis, bool upwards)
+/* ---- the cells -------------------------------------------------------------------------------------------- */
+
+/* A cell of the canvas on the way through it, x fastest. */
+struct cursor {
+    int64_t cell, at[3];
+};
+
+static bool step_on(struct cursor *cursor, const struct vox_settings *s)
+{
+    cursor->cell++;
+    if (++cursor->at[0] < s->nx) return true;
+    cursor->at[0] = 0;
+    if (++cursor->at[1] < s->ny) return true;
+    cursor->at[1] = 0;
+    return ++cursor->at[2] < s->nz;
+}
+
+/* Whether a bond leads from a cell with a voxel along +axis: neighbours that are both held in all degrees of freedom
+ * have none. */
+static bool has_bond(const vox_model *model, const uint8_t *material, const struct cursor *cursor, enum axis axis)
 {
     const struct vox_settings *s = &model->settings;
     const int64_t stride[] = {1, s->nx, s->nx * s->ny}, length[] = {s->nx, s->ny, s->nz};
-    const int64_t at = cell / stride[axis] % length[axis];
-    if (at == (upwards ? length[axis] - 1 : 0)) return -1;
-    return upwards ? cell + stride[axis] : cell - stride[axis];
+    if (cursor->at[axis] == length[axis] - 1) return false;
+    const int64_t next = cursor->cell + stride[axis];
+    if (!material[next]) return false;
+    return !(model->fixed[cursor->cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL);
 }
 
-/* Index of the cell at the other end of a bond along +axis, or -1 if there is no bond: neighbours that are both
- * held in all degrees of freedom have none. */
-static int64_t bonded_cell_after(const vox_model *model, const uint8_t *material, int64_t cell, enum axis axis)
+static int32_t substance_at(const vox_model *model, uint8_t code)
 {
-    const int64_t next = cell_beside(model, cell, axis, true);
-    if (next < 0 || !material[next]) return -1;
-    return model->fixed[cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL ? -1 : next;
-}
-
-static const struct substance *substance_at(const vox_model *model, uint8_t code)
-{
-    return &model->substances[model->of_code[code]];
+    return model->of_code[code];
 }
 
 /* Section 3. A body without bonds has another step, as the engine does: the square root of the edge is missing. */
@@ -44,107 +57,329 @@ static enum vox_status set_clock(struct census *census, const vox_model *model, 
     return census->dt > 0.0 ? VOX_OK : VOX_BAD_TIME_STEP;
 }
 
+/* Widens the box of a census (`length` being its last cell for the time being) by a cell. */
+static void widen(struct census *census, const struct cursor *cursor)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t at = cursor->at[axis];
+        if (census->n_voxels == 1 || at < census->from[axis]) census->from[axis] = at;
+        if (census->n_voxels == 1 || at > census->length[axis]) census->length[axis] = at;
+    }
+}
+
 enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census)
 {
     double fastest_bond = 0.0, fastest_voxel = 0.0;
     *census = (struct census){0};
     for (int64_t cell = 0; cell < model->cells; cell++)
         if (material[cell] && model->of_code[material[cell]] < 0) return VOX_UNKNOWN_MATERIAL;
-    for (int64_t cell = 0; cell < model->cells; cell++) {
-        if (!material[cell]) continue;
-        const struct substance *own = substance_at(model, material[cell]);
+    const int64_t stride[] = {1, model->settings.nx, model->settings.nx * model->settings.ny};
+    struct cursor cursor = {0};
+    do {
+        if (!material[cursor.cell]) continue;
+        const int32_t own = substance_at(model, material[cursor.cell]);
         census->n_voxels++;
-        fastest_voxel = fmax(fastest_voxel, own->youngs_modulus / own->mass);
+        widen(census, &cursor);
+        fastest_voxel = fmax(fastest_voxel, model->substances[own].youngs_modulus / model->substances[own].mass);
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
-            const int64_t next = bonded_cell_after(model, material, cell, axis);
-            if (next < 0) continue;
+            if (!has_bond(model, material, &cursor, axis)) continue;
+            const int32_t other = substance_at(model, material[cursor.cell + stride[axis]]);
             census->n_bonds++;
-            fastest_bond = fmax(fastest_bond, coupling_of(model, own, substance_at(model, material[next]))->fastest);
+            fastest_bond = fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
         }
-    }
+    } while (step_on(&cursor, &model->settings));
     if (census->n_voxels == 0) return VOX_EMPTY_BODY;
+    for (int axis = 0; axis < 3; axis++) census->length[axis] += 1 - census->from[axis];
     return set_clock(census, model, fastest_bond, fastest_voxel);
 }
 
-static struct voxel voxel_at_rest(const vox_model *model, int64_t cell, uint8_t code, double phase_cycles)
+/* ---- slots ------------------------------------------------------------------------------------------------ */
+
+int64_t place_of(const struct body *body, int64_t slot, enum axis axis)
 {
-    const struct vox_settings *s = &model->settings;
-    const struct vec start = {
-        s->voxel_size * ((double)(cell % s->nx) + 0.5),
-        s->voxel_size * ((double)(cell / s->nx % s->ny) + 0.5),
-        s->voxel_size * ((double)(cell / (s->nx * s->ny)) + 0.5),
-    };
-    const struct substance *substance = substance_at(model, code);
-    return (struct voxel){
-        .position = start,
-        .start = start,
-        .orientation = {1.0, 0.0, 0.0, 0.0},
-        .size = s->voxel_size,
-        .phase = substance->strain_amplitude != 0.0 ? (double)(float)phase_cycles : 0.0,
-        .substance = substance,
-        .cell = (int32_t)cell,
-        .fixed = model->fixed[cell],
-    };
+    return slot / body->step[axis] % body->census.length[axis];
 }
 
-static void place_voxels(struct body *body, const uint8_t *material, const double *phase_cycles)
+int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards)
 {
-    int32_t n = 0;
-    for (int64_t cell = 0; cell < body->model->cells; cell++) {
-        body->voxel_in[cell] = material[cell] ? n : -1;
-        if (material[cell]) body->voxels[n++] = voxel_at_rest(body->model, cell, material[cell], phase_cycles[cell]);
+    if (place_of(body, slot, axis) == (upwards ? body->census.length[axis] - 1 : 0)) return -1;
+    return upwards ? slot + body->step[axis] : slot - body->step[axis];
+}
+
+/* Those after the box too: a tile's upper ends may lie there. */
+static int64_t slots_in_all(const struct body *body)
+{
+    return body->n_tiles * TILE + body->step[2];
+}
+
+static int64_t slot_of(const struct body *body, const struct cursor *cursor)
+{
+    const int64_t *from = body->census.from;
+    return cursor->at[0] - from[0] + body->step[1] * (cursor->at[1] - from[1]) +
+           body->step[2] * (cursor->at[2] - from[2]);
+}
+
+/* ---- memory ----------------------------------------------------------------------------------------------- */
+
+/* Hands out parts of a piece of memory; without one, only counts what would be needed. */
+struct arena {
+    char *base;
+    size_t used;
+};
+
+/* An odd number of cache lines, so that arrays of one length do not meet in one set of the cache. */
+static void *take(struct arena *arena, int64_t n, size_t size)
+{
+    const size_t lines = ((size_t)n * size + LINE - 1) / LINE | 1;
+    void *part = arena->base ? arena->base + arena->used : NULL;
+    arena->used += lines * LINE;
+    return part;
+}
+
+static double *take_numbers(struct arena *arena, int64_t n)
+{
+    return take(arena, n, sizeof(double));
+}
+
+static struct vecs take_vecs(struct arena *arena, int64_t n)
+{
+    double *x = take_numbers(arena, n), *y = take_numbers(arena, n), *z = take_numbers(arena, n);
+    return (struct vecs){x, y, z};
+}
+
+static void lay_out_voxels(struct voxels *v, struct arena *arena, int64_t n)
+{
+    v->position = take_vecs(arena, n);
+    double *w = take_numbers(arena, n);
+    const struct vecs q = take_vecs(arena, n);
+    v->orientation = (struct quats){w, q.x, q.y, q.z};
+    v->size = take_numbers(arena, n);
+    v->force = take_vecs(arena, n);
+    v->torque = take_vecs(arena, n);
+    v->momentum = take_vecs(arena, n);
+    v->spin = take_vecs(arena, n);
+    v->start = take_vecs(arena, n);
+    double **const constants[] = {&v->phase, &v->amplitude, &v->mobility, &v->drag_rate, &v->weight,
+                                  &v->turnability, &v->spin_kept, &v->mobile};
+    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++) *constants[i] = take_numbers(arena, n);
+    v->substance = take(arena, n, sizeof *v->substance);
+    v->fixed = take(arena, n, sizeof *v->fixed);
+    v->touching = take(arena, n, sizeof *v->touching);
+}
+
+static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, int64_t n_tiles, bool alike)
+{
+    bonds->there = take_numbers(arena, n);
+    bonds->small = take_numbers(arena, n);
+    bonds->stretch = take_vecs(arena, n);
+    bonds->lower_y = take_numbers(arena, n);
+    bonds->lower_z = take_numbers(arena, n);
+    bonds->upper = take_vecs(arena, n);
+    for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i] = alike ? NULL : take_numbers(arena, n);
+    bonds->lower = take(arena, n, sizeof *bonds->lower);
+    bonds->tile_level = take(arena, n_tiles, sizeof *bonds->tile_level);
+}
+
+static void lay_out(struct body *body, struct arena *arena)
+{
+    const int64_t n = slots_in_all(body);
+    lay_out_voxels(&body->voxels, arena, n);
+    for (int axis = 0; axis < 3; axis++)
+        lay_out_bonds(&body->bonds[axis], arena, n, body->n_tiles, body->coupling != NULL);
+    body->slots = take(arena, body->census.n_voxels, sizeof *body->slots);
+    body->cells = take(arena, body->census.n_voxels, sizeof *body->cells);
+    body->partly = take(arena, body->census.n_voxels, sizeof *body->partly);
+    body->occupied = take(arena, n, sizeof *body->occupied);
+    body->bonded = take(arena, n, sizeof *body->bonded);
+}
+
+static enum vox_status allocate(struct body *body)
+{
+    struct arena arena = {0};
+    lay_out(body, &arena);
+    if (arena.used > body->memory_size) {
+        free(body->memory);
+        body->memory_size = 0;
+        body->memory = malloc(arena.used + LINE);
+        if (!body->memory) return VOX_NO_MEMORY;
+        body->memory_size = arena.used;
+    }
+    arena.base = (char *)body->memory + (LINE - (uintptr_t)body->memory % LINE);
+    memset(arena.base, 0, arena.used);
+    arena.used = 0;
+    lay_out(body, &arena);
+    return VOX_OK;
+}
+
+/* ---- the body --------------------------------------------------------------------------------------------- */
+
+static void place_voxel(struct body *body, const struct cursor *cursor, int32_t substance_index)
+{
+    const vox_model *model = body->model;
+    const struct substance *substance = &model->substances[substance_index];
+    const int64_t slot = slot_of(body, cursor);
+    const uint8_t fixed = model->fixed[cursor->cell];
+    struct voxels *v = &body->voxels;
+    v->substance[slot] = (uint8_t)substance_index;
+    v->fixed[slot] = fixed;
+    v->amplitude[slot] = substance->strain_amplitude;
+    v->mobility[slot] = 1.0 / substance->mass;
+    v->drag_rate[slot] = substance->slow_drag / substance->mass;
+    v->weight[slot] = substance->mass * model->settings.gravity;
+    v->turnability[slot] = 1.0 / substance->inertia;
+    v->spin_kept[slot] = 1.0 - substance->slow_spin_rate * body->census.dt;
+    v->mobile[slot] = fixed == 0 ? 1.0 : 0.0;
+    body->occupied[slot] = 1;
+    if (fixed != 0 && fixed != VOX_FIX_ALL) body->partly[body->n_partly++] = (int32_t)slot;
+}
+
+/* Where the lattice has its cells, also after the box. */
+static void place_starts(struct body *body)
+{
+    const double edge = body->model->settings.voxel_size;
+    const int64_t *from = body->census.from, *length = body->census.length;
+    struct vecs start = body->voxels.start;
+    for (int64_t row = 0; row * length[0] < slots_in_all(body); row++) {
+        const double y = edge * ((double)(from[1] + row % length[1]) + 0.5);
+        const double z = edge * ((double)(from[2] + row / length[1]) + 0.5);
+        for (int64_t x = 0; x < length[0] && row * length[0] + x < slots_in_all(body); x++)
+            vec_put(start, row * length[0] + x, (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
     }
 }
 
-/* Bonds of one axis stand together, so that the branches on the axis are foreseeable. */
+static void place_voxels(struct body *body, const uint8_t *material)
+{
+    int64_t n = 0;
+    struct cursor cursor = {0};
+    do {
+        if (!material[cursor.cell]) continue;
+        place_voxel(body, &cursor, substance_at(body->model, material[cursor.cell]));
+        body->cells[n] = (int32_t)cursor.cell;
+        body->slots[n++] = (int32_t)slot_of(body, &cursor);
+    } while (step_on(&cursor, &body->model->settings));
+}
+
+static void place_bond(struct body *body, int64_t lower, enum axis axis)
+{
+    struct bonds *bonds = &body->bonds[axis];
+    const int64_t upper = lower + bonds->step;
+    bonds->lower[bonds->n++] = (int32_t)lower;
+    bonds->there[lower] = 1.0;
+    body->bonded[lower] |= (uint8_t)(2u << 2 * axis);
+    body->bonded[upper] |= (uint8_t)(1u << 2 * axis);
+    if (bonds->tile_level[lower / TILE] > 0) bonds->tile_level[lower / TILE] = 0;
+    if (body->coupling) return;
+    double numbers[MOST_COEFFICIENTS];
+    memcpy(numbers, coupling_of(body, lower, upper), (size_t)N_COEFFICIENTS * sizeof *numbers);
+    for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i][lower] = numbers[i];
+}
+
 static void place_bonds(struct body *body, const uint8_t *material)
 {
-    struct bond *bond = body->bonds;
-    for (int64_t i = 0; i < body->census.n_voxels; i++)
-        for (int side = 0; side < 6; side++) body->bonded[i][side] = -1;
     for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
-        for (int32_t lower = 0; lower < body->census.n_voxels; lower++) {
-            const int64_t next = bonded_cell_after(body->model, material, body->voxels[lower].cell, axis);
-            if (next < 0) continue;
-            const int32_t upper = body->voxel_in[next];
-            *bond++ = (struct bond){
-                .lower = lower,
-                .upper = upper,
-                .axis = axis,
-                .small = true,
-                .coupling = coupling_of(body->model, body->voxels[lower].substance, body->voxels[upper].substance),
-            };
-            body->bonded[lower][2 * axis + 1] = upper;
-            body->bonded[upper][2 * axis] = lower;
-        }
+        struct bonds *bonds = &body->bonds[axis];
+        bonds->n = 0;
+        bonds->step = body->step[axis];
+        for (int64_t tile = 0; tile < body->n_tiles; tile++) bonds->tile_level[tile] = NEVER;
     }
+    struct cursor cursor = {0};
+    do {
+        if (!material[cursor.cell]) continue;
+        for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
+            if (has_bond(body->model, material, &cursor, axis)) place_bond(body, slot_of(body, &cursor), axis);
+    } while (step_on(&cursor, &body->model->settings));
 }
 
-enum vox_status body_create(struct body *body, const vox_model *model, const struct census *census,
-                            const uint8_t *material, const double *phase_cycles)
+/* The coupling that all bonds of a model's bodies have, or NULL if they may differ. */
+static const struct coupling *only_coupling(const vox_model *model)
 {
-    const size_t n_voxels = (size_t)census->n_voxels, n_bonds = (size_t)census->n_bonds;
-    *body = (struct body){.model = model, .census = *census};
-    body->voxels = malloc(n_voxels * sizeof *body->voxels);
-    body->bonded = malloc(n_voxels * sizeof *body->bonded);
-    body->bonds = malloc((n_bonds > 0 ? n_bonds : 1) * sizeof *body->bonds);
-    body->voxel_in = malloc((size_t)model->cells * sizeof *body->voxel_in);
-    if (!body->voxels || !body->bonded || !body->bonds || !body->voxel_in) return VOX_NO_MEMORY;
-    place_voxels(body, material, phase_cycles);
+    const struct coupling *first = &model->couplings[0];
+    const int64_t n = (int64_t)model->n_substances * model->n_substances;
+    for (int64_t i = 1; i < n; i++)
+        if (memcmp(first, &model->couplings[i], offsetof(struct coupling, fastest)) != 0) return NULL;
+    return first;
+}
+
+static void set_box(struct body *body)
+{
+    const int64_t *length = body->census.length;
+    body->step[0] = 1;
+    body->step[1] = length[0];
+    body->step[2] = length[0] * length[1];
+    body->n_slots = length[0] * length[1] * length[2];
+    body->n_tiles = (body->n_slots + TILE - 1) / TILE;
+}
+
+enum vox_status body_shape(struct body *body, const vox_model *model, const struct census *census,
+                           const uint8_t *material)
+{
+    body->model = model;
+    body->census = *census;
+    body->coupling = only_coupling(model);
+    body->n_partly = 0;
+    set_box(body);
+    enum vox_status status = allocate(body);
+    if (status != VOX_OK) return status;
+    place_starts(body);
+    place_voxels(body, material);
     place_bonds(body, material);
-    if (model->settings.fluid_drag > 0.0) {
-        const enum vox_status status = surface_create(body);
-        if (status != VOX_OK) return status;
+    if (model->settings.fluid_drag > 0.0) status = surface_shape(body);
+    if (status == VOX_OK && model->settings.self_collision) status = contacts_shape(body);
+    return status;
+}
+
+static void fill(double *numbers, int64_t n, double value)
+{
+    for (int64_t i = 0; i < n; i++) numbers[i] = value;
+}
+
+static void clear(struct vecs vecs, int64_t n)
+{
+    fill(vecs.x, n, 0.0);
+    fill(vecs.y, n, 0.0);
+    fill(vecs.z, n, 0.0);
+}
+
+static void copy(struct vecs to, struct vecs from, int64_t n)
+{
+    memcpy(to.x, from.x, (size_t)n * sizeof *to.x);
+    memcpy(to.y, from.y, (size_t)n * sizeof *to.y);
+    memcpy(to.z, from.z, (size_t)n * sizeof *to.z);
+}
+
+static void rest_bonds(struct bonds *bonds, int64_t n)
+{
+    fill(bonds->small, n, 1.0);
+    clear(bonds->stretch, n);
+    fill(bonds->lower_y, n, 0.0);
+    fill(bonds->lower_z, n, 0.0);
+    clear(bonds->upper, n);
+}
+
+void body_rest(struct body *body, const double *phase_cycles)
+{
+    struct voxels *v = &body->voxels;
+    const int64_t n = slots_in_all(body);
+    copy(v->position, v->start, n);
+    fill(v->orientation.w, n, 1.0);
+    clear((struct vecs){v->orientation.x, v->orientation.y, v->orientation.z}, n);
+    fill(v->size, n, body->model->settings.voxel_size);
+    clear(v->force, n);
+    clear(v->torque, n);
+    clear(v->momentum, n);
+    clear(v->spin, n);
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        if (v->amplitude[slot] != 0.0) v->phase[slot] = (double)(float)phase_cycles[body->cells[i]];
     }
-    return model->settings.self_collision ? contacts_create(body) : VOX_OK;
+    for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
+    body->time = body->top_speed = 0.0;
+    if (body->model->settings.self_collision) contacts_rest(body);
 }
 
 void body_destroy(struct body *body)
 {
     contacts_destroy(&body->contacts);
     surface_destroy(&body->surface);
-    free(body->voxels);
-    free(body->bonded);
-    free(body->bonds);
-    free(body->voxel_in);
+    free(body->memory);
 }

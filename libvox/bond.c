@@ -72,16 +72,34 @@ struct wrench {
     struct vec force_lower, force_upper, moment_lower, moment_upper;
 };
 
-static struct deformation rate_of(struct deformation now, const struct bond *bond, double per_second)
+/* The last deformation of the bond in a slot; its lower end never turns about the bond. */
+IN_LOOP struct deformation last_of(const struct bonds *bonds, int64_t slot)
 {
     return (struct deformation){
-        vec_scale(per_second, vec_sub(now.stretch, bond->stretch)),
-        vec_scale(per_second, vec_sub(now.turn_lower, bond->turn_lower)),
-        vec_scale(per_second, vec_sub(now.turn_upper, bond->turn_upper)),
+        vec_at(bonds->stretch, slot),
+        {0.0, bonds->lower_y[slot], bonds->lower_z[slot]},
+        vec_at(bonds->upper, slot),
     };
 }
 
-static struct wrench spring(const struct coupling *c, struct deformation d)
+IN_LOOP void keep(const struct bonds *bonds, int64_t slot, struct deformation now)
+{
+    vec_put(bonds->stretch, slot, now.stretch);
+    bonds->lower_y[slot] = now.turn_lower.y;
+    bonds->lower_z[slot] = now.turn_lower.z;
+    vec_put(bonds->upper, slot, now.turn_upper);
+}
+
+IN_LOOP struct deformation rate_of(struct deformation now, struct deformation last, double per_second)
+{
+    return (struct deformation){
+        vec_scale(per_second, vec_sub(now.stretch, last.stretch)),
+        vec_scale(per_second, vec_sub(now.turn_lower, last.turn_lower)),
+        vec_scale(per_second, vec_sub(now.turn_upper, last.turn_upper)),
+    };
+}
+
+IN_LOOP struct wrench spring(const struct coupling *c, struct deformation d)
 {
     const struct vec p = d.stretch, a = d.turn_lower, b = d.turn_upper;
     const struct vec force = {
@@ -119,7 +137,7 @@ static struct vec damping_moment(const struct damper *c, struct vec v, struct ve
     };
 }
 
-static void add_damping(struct wrench *wrench, const struct coupling *c, struct deformation rate)
+IN_LOOP void add_damping(struct wrench *wrench, const struct coupling *c, struct deformation rate)
 {
     const struct vec v = rate.stretch, a = rate.turn_lower, b = rate.turn_upper;
     wrench->force_lower = vec_add(wrench->force_lower, damping_force(&c->lower, rate));
@@ -129,10 +147,11 @@ static void add_damping(struct wrench *wrench, const struct coupling *c, struct 
 }
 
 /* Adds one end's force and moment, given in the bond's frame, to a voxel. */
-static inline void load(struct voxel *voxel, enum axis axis, struct quat frame, struct vec force, struct vec moment)
+IN_LOOP void load(const struct voxels *v, int64_t slot, enum axis axis, struct quat frame, struct vec force,
+                  struct vec moment)
 {
-    voxel->force = vec_add(voxel->force, quat_rotate(frame, x_to_axis(axis, force)));
-    voxel->torque = vec_sub(voxel->torque, quat_rotate(frame, x_to_axis(axis, moment)));
+    vec_put(v->force, slot, vec_add(vec_at(v->force, slot), quat_rotate(frame, x_to_axis(axis, force))));
+    vec_put(v->torque, slot, vec_sub(vec_at(v->torque, slot), quat_rotate(frame, x_to_axis(axis, moment))));
 }
 
 /* How a bond is deformed now. */
@@ -142,19 +161,19 @@ struct pose {
     bool small;
 };
 
-IN_LOOP struct pose pose_of(const struct bond *bond, const struct voxel *lower, const struct voxel *upper)
+IN_LOOP struct pose pose_of(const struct voxels *v, enum axis axis, int64_t lower, int64_t upper, bool small)
 {
-    const enum axis axis = bond->axis;
-    const double rest = 0.5 * (lower->size + upper->size);
-    const struct quat back = quat_conj(lower->orientation);
-    const struct vec u = axis_to_x(axis, quat_rotate(back, vec_sub(upper->position, lower->position)));
-    const struct quat turn = quat_mul(back, upper->orientation);
+    const double rest = 0.5 * (v->size[lower] + v->size[upper]);
+    const struct quat orientation = quat_at(v->orientation, lower), back = quat_conj(orientation);
+    const struct vec apart = vec_sub(vec_at(v->position, upper), vec_at(v->position, lower));
+    const struct vec u = axis_to_x(axis, quat_rotate(back, apart));
+    const struct quat turn = quat_mul(back, quat_at(v->orientation, upper));
     const struct vec turn_axis = axis_to_x(axis, (struct vec){turn.x, turn.y, turn.z});
     const struct quat relative = {turn.w, turn_axis.x, turn_axis.y, turn_axis.z};
 
-    if (next_frame_is_small(bond->small, relative.w, u, rest)) {
-        const struct deformation small = {{u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
-        return (struct pose){small, lower->orientation, true};
+    if (next_frame_is_small(small, relative.w, u, rest)) {
+        const struct deformation slight = {{u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
+        return (struct pose){slight, orientation, true};
     }
     const double length = sqrt(vec_dot(u, u));
     const struct quat onto_x = rotation_onto_x(u, length);
@@ -162,37 +181,47 @@ IN_LOOP struct pose pose_of(const struct bond *bond, const struct voxel *lower, 
     const struct deformation large = {
         {length - rest, 0.0, 0.0}, rotation_vector(onto_x), rotation_vector(quat_mul(onto_x, relative))};
     const struct quat frame =
-        quat_mul(lower->orientation, (struct quat){onto_x.w, -straighten.x, -straighten.y, -straighten.z});
+        quat_mul(orientation, (struct quat){onto_x.w, -straighten.x, -straighten.y, -straighten.z});
     return (struct pose){large, frame, false};
 }
 
 /* False if the bond is stretched or compressed by more than `most`, or by a NaN. */
-IN_LOOP bool bond_apply(struct bond *restrict bond, struct voxel *restrict voxels, double most, double per_second)
+IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, double most, double per_second)
 {
-    struct voxel *lower = &voxels[bond->lower], *upper = &voxels[bond->upper];
-    const struct pose pose = pose_of(bond, lower, upper);
+    const struct bonds *bonds = &body->bonds[axis];
+    const int64_t upper = lower + bonds->step;
+    const struct coupling *coupling = coupling_of(body, lower, upper);
+    const bool small = bonds->small[lower] != 0.0;
+    const struct pose pose = pose_of(&body->voxels, axis, lower, upper, small);
     const struct deformation *now = &pose.deformation;
 
-    struct wrench wrench = spring(bond->coupling, *now);
-    if (pose.small == bond->small) { /* a change of frame leaves the history, from which the next rates come */
-        add_damping(&wrench, bond->coupling, rate_of(*now, bond, per_second));
-        bond->stretch = now->stretch;
-        bond->turn_lower = now->turn_lower;
-        bond->turn_upper = now->turn_upper;
+    struct wrench wrench = spring(coupling, *now);
+    if (pose.small == small) { /* a change of frame leaves the history, from which the next rates come */
+        add_damping(&wrench, coupling, rate_of(*now, last_of(bonds, lower), per_second));
+        keep(bonds, lower, *now);
     }
-    bond->small = pose.small;
-    load(lower, bond->axis, pose.frame, wrench.force_lower, wrench.moment_lower);
-    load(upper, bond->axis, pose.frame, wrench.force_upper, wrench.moment_upper);
+    bonds->small[lower] = pose.small ? 1.0 : 0.0;
+    load(&body->voxels, lower, axis, pose.frame, wrench.force_lower, wrench.moment_lower);
+    load(&body->voxels, upper, axis, pose.frame, wrench.force_upper, wrench.moment_upper);
     return fabs(now->stretch.x) <= most;
 }
 
-bool bonds_apply(struct body *body, double per_second)
+/* The axis is a constant in each loop. */
+IN_LOOP bool bonds_along(const struct body *body, enum axis axis, double most, double per_second)
+{
+    const struct bonds *bonds = &body->bonds[axis];
+    bool fine = true;
+    for (int64_t i = 0; i < bonds->n; i++) fine &= bond_apply(body, axis, bonds->lower[i], most, per_second);
+    return fine;
+}
+
+bool scalar_bonds_apply(struct body *body, double per_second)
 {
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;
-    bool fine = true;
-    for (int64_t i = 0; i < body->census.n_bonds; i++)
-        fine &= bond_apply(&body->bonds[i], body->voxels, most, per_second);
+    bool fine = bonds_along(body, AXIS_X, most, per_second);
+    fine &= bonds_along(body, AXIS_Y, most, per_second);
+    fine &= bonds_along(body, AXIS_Z, most, per_second);
     return fine;
 }
 
@@ -207,17 +236,23 @@ static double spring_energy(const struct coupling *c, struct deformation d)
     return stretched + twisted + sheared + c->bend * bent;
 }
 
+static void add_tension(const struct body *body, enum axis axis, struct tension *tension)
+{
+    const struct bonds *bonds = &body->bonds[axis];
+    for (int64_t i = 0; i < bonds->n; i++) {
+        const int64_t lower = bonds->lower[i], upper = lower + bonds->step;
+        const struct pose pose = pose_of(&body->voxels, axis, lower, upper, bonds->small[lower] != 0.0);
+        const double strain = pose.deformation.stretch.x / body->model->settings.voxel_size;
+        tension->energy += spring_energy(coupling_of(body, lower, upper), pose.deformation);
+        tension->least = fmin(tension->least, strain);
+        tension->greatest = fmax(tension->greatest, strain);
+    }
+}
+
 struct tension bonds_tension(const struct body *body)
 {
-    const int64_t n = body->census.n_bonds;
-    struct tension tension = {0.0, n > 0 ? HUGE_VAL : 0.0, n > 0 ? -HUGE_VAL : 0.0};
-    for (int64_t i = 0; i < n; i++) {
-        const struct bond *bond = &body->bonds[i];
-        const struct pose pose = pose_of(bond, &body->voxels[bond->lower], &body->voxels[bond->upper]);
-        const double strain = pose.deformation.stretch.x / body->model->settings.voxel_size;
-        tension.energy += spring_energy(bond->coupling, pose.deformation);
-        tension.least = fmin(tension.least, strain);
-        tension.greatest = fmax(tension.greatest, strain);
-    }
+    const bool any = body->census.n_bonds > 0;
+    struct tension tension = {0.0, any ? HUGE_VAL : 0.0, any ? -HUGE_VAL : 0.0};
+    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) add_tension(body, axis, &tension);
     return tension;
 }

@@ -1,105 +1,21 @@
-/* Self collision: which voxels may touch (section 10). */
+/* Self collision: which voxels may touch (section 10).
+ *
+ * Lists are sorted by their first voxel, then by the second, so that forces are added in an order that does not depend
+ * on how a list was found. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "internal.h"
 
 static const double CROWDING = 2.0; /* how much denser than the lattice voxels may lie while all contacts are listed */
+static const double STRAYED = 0.35; /* lattice edges; to be near by holds until a voxel is further from its start */
 
 static int64_t least(int64_t a, int64_t b)
 {
     return a < b ? a : b;
 }
 
-static bool on_surface(const int32_t bonded[6])
-{
-    for (int side = 0; side < 6; side++)
-        if (bonded[side] < 0) return true;
-    return false;
-}
-
-static double coordinate(struct vec v, enum axis axis)
-{
-    switch (axis) {
-    case AXIS_X: return v.x;
-    case AXIS_Y: return v.y;
-    case AXIS_Z: break;
-    }
-    return v.z;
-}
-
-static int hops_left_out(const struct vox_settings *s)
-{
-    return (int)(s->collision_list_factor * s->collision_horizon);
-}
-
-/* Most voxels within so many bonds of one, itself included: the points of an octahedron on the lattice. */
-static int64_t most_near(int hops)
-{
-    const int64_t h = hops;
-    return (2 * h + 1) * (2 * h * h + 2 * h + 3) / 3;
-}
-
-/* Writes the voxels within `hops` bonds of one, itself first, and returns how many there are. What it writes is also
- * the queue of its breadth-first search. */
-static int64_t gather_near(const struct body *body, int32_t voxel, int hops, int32_t *near)
-{
-    int32_t *stamp = body->contacts.stamp;
-    int64_t begin = 0, n = 0;
-    near[n++] = voxel;
-    stamp[voxel] = voxel;
-    for (int hop = 0; hop < hops; hop++) {
-        const int64_t end = n;
-        for (; begin < end; begin++) {
-            const int32_t *bonded = body->bonded[near[begin]];
-            for (int side = 0; side < 6; side++) {
-                if (bonded[side] < 0 || stamp[bonded[side]] == voxel) continue;
-                stamp[bonded[side]] = voxel;
-                near[n++] = bonded[side];
-            }
-        }
-    }
-    return n;
-}
-
-/* Cells in an order in which the longest axis is the slowest, so that the skin starts sorted along it. */
-static int64_t nth_cell(const struct vox_settings *s, enum axis longest, int64_t n)
-{
-    switch (longest) {
-    case AXIS_X: return n / (s->ny * s->nz) + s->nx * (n % (s->ny * s->nz));
-    case AXIS_Y: return n % s->nx + s->nx * (n / (s->nx * s->nz) + s->ny * (n / s->nx % s->nz));
-    case AXIS_Z: break;
-    }
-    return n;
-}
-
-static enum axis longest_axis(const struct vox_settings *s)
-{
-    if (s->nx >= s->ny && s->nx >= s->nz) return AXIS_X;
-    return s->ny >= s->nz ? AXIS_Y : AXIS_Z;
-}
-
-static int64_t count_surface(const struct body *body)
-{
-    int64_t n = 0;
-    for (int64_t i = 0; i < body->census.n_voxels; i++) n += on_surface(body->bonded[i]);
-    return n;
-}
-
-static void place_skin(struct body *body)
-{
-    struct contacts *contacts = &body->contacts;
-    const struct vox_settings *settings = &body->model->settings;
-    const int hops = hops_left_out(settings);
-    int64_t n = 0, n_near = 0;
-    for (int64_t i = 0; i < body->census.n_voxels; i++) contacts->stamp[i] = -1;
-    for (int64_t i = 0; i < body->model->cells; i++) {
-        const int32_t voxel = body->voxel_in[nth_cell(settings, contacts->longest, i)];
-        if (voxel < 0 || !on_surface(body->bonded[voxel])) continue;
-        const int64_t begin = n_near;
-        n_near += gather_near(body, voxel, hops, contacts->near + n_near);
-        contacts->skin[n++] = (struct skin){.voxel = voxel, .near_begin = begin, .near_end = n_near};
-    }
-}
+/* ---- distances -------------------------------------------------------------------------------------------- */
 
 /* How far the fastest voxel may move before the list is made anew, m. */
 static double leeway(const struct vox_settings *s)
@@ -128,100 +44,311 @@ static int64_t pairs_per_voxel(const vox_model *model)
     return (int64_t)(CROWDING * 0.5 * 4.19 * radius * radius * radius);
 }
 
-enum vox_status contacts_create(struct body *body)
+/* ---- voxels that are joined by a few bonds ---------------------------------------------------------------- */
+
+/* Lattice vector between two voxels. */
+struct offset {
+    int64_t by[3];
+};
+
+static struct offset offset_between(const struct body *body, int64_t first, int64_t second)
+{
+    struct offset offset;
+    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
+        offset.by[axis] = place_of(body, second, axis) - place_of(body, first, axis);
+    return offset;
+}
+
+static int64_t hops_of(const struct offset *offset)
+{
+    return llabs(offset->by[0]) + llabs(offset->by[1]) + llabs(offset->by[2]);
+}
+
+static bool is_bonded(const struct body *body, int64_t slot, int axis, bool upwards)
+{
+    return body->bonded[slot] >> (2 * axis + upwards) & 1;
+}
+
+/* Whether one of the shortest ways to a voxel, all of whose steps lead closer, consists of bonds. */
+static bool is_joined_straight(const struct body *body, int64_t slot, struct offset offset)
+{
+    if (hops_of(&offset) == 0) return true;
+    for (int axis = 0; axis < 3; axis++) {
+        if (offset.by[axis] == 0) continue;
+        const bool upwards = offset.by[axis] > 0;
+        if (!is_bonded(body, slot, axis, upwards)) continue;
+        struct offset rest = offset;
+        rest.by[axis] += upwards ? -1 : 1;
+        if (is_joined_straight(body, upwards ? slot + body->step[axis] : slot - body->step[axis], rest)) return true;
+    }
+    return false;
+}
+
+/* Marks the voxels to which a way of at most so many bonds leads: a breadth-first search. */
+static void search_from(struct body *body, int32_t from, int64_t hops)
+{
+    struct search *search = &body->contacts.search;
+    int64_t begin = 0, n = 0;
+    search->from = from;
+    search->number++;
+    search->queue[n++] = from;
+    search->reached[from] = search->number;
+    for (int64_t hop = 0; hop < hops; hop++) {
+        const int64_t end = n;
+        for (; begin < end; begin++) {
+            const int32_t slot = search->queue[begin];
+            for (int side = 0; side < 6; side++) {
+                if (!is_bonded(body, slot, side / 2, side % 2)) continue;
+                const int64_t step = body->step[side / 2], next = side % 2 ? slot + step : slot - step;
+                if (search->reached[next] == search->number) continue;
+                search->reached[next] = search->number;
+                search->queue[n++] = (int32_t)next;
+            }
+        }
+    }
+}
+
+static bool is_joined_anyhow(struct body *body, int32_t from, int32_t to, int64_t hops)
+{
+    struct search *search = &body->contacts.search;
+    if (search->from != from) search_from(body, from, hops);
+    return search->reached[to] == search->number;
+}
+
+/* Whether two voxels are too close along bonds to collide. A way on the lattice that is no shortest one is longer by
+ * two bonds at least. */
+static bool is_left_out(struct body *body, int32_t first, int32_t second)
+{
+    const struct vox_settings *s = &body->model->settings;
+    const int64_t most = (int64_t)(s->collision_list_factor * s->collision_horizon);
+    const struct offset offset = offset_between(body, first, second);
+    const int64_t hops = hops_of(&offset);
+    if (hops > most) return false;
+    if (is_joined_straight(body, first, offset)) return true;
+    return hops + 2 <= most && is_joined_anyhow(body, first, second, most);
+}
+
+/* Whether two voxels may ever be listed. */
+static bool may_collide(struct body *body, int32_t first, int32_t second)
+{
+    const uint8_t *fixed = body->voxels.fixed;
+    if (fixed[first] == VOX_FIX_ALL && fixed[second] == VOX_FIX_ALL) return false;
+    return !is_left_out(body, first, second);
+}
+
+/* ---- lists ------------------------------------------------------------------------------------------------ */
+
+static bool reserve(struct pairs *pairs, int64_t capacity)
+{
+    if (capacity <= pairs->capacity) return true;
+    struct pair *list = realloc(pairs->list, (size_t)capacity * sizeof *list);
+    if (!list) return false;
+    pairs->list = list;
+    pairs->capacity = capacity;
+    return true;
+}
+
+static bool append(struct pairs *pairs, struct pair pair)
+{
+    if (pairs->n == pairs->capacity && !reserve(pairs, 2 * pairs->capacity + 64)) return false;
+    pairs->list[pairs->n++] = pair;
+    return true;
+}
+
+/* Whether the original engine lists two voxels: its reach is that of the first; voxels exactly at it are out. */
+static bool engine_lists(double first_size, double distance, const struct vox_settings *s)
+{
+    return distance < s->collision_horizon * first_size && distance < engine_reach(s);
+}
+
+/* Whether two voxels that may collide are close enough to be listed now. */
+static bool is_due(const struct body *body, struct pair pair)
+{
+    const struct vox_settings *s = &body->model->settings;
+    const struct voxels *v = &body->voxels;
+    const struct vec apart = vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
+    const double distance2 = vec_dot(apart, apart), farthest = farthest_listed(body->model);
+    if (distance2 >= farthest * farthest) return false;
+    return s->complete_contacts || engine_lists(v->size[pair.first], sqrt(distance2), s);
+}
+
+/* ---- the neighbourhood on the lattice --------------------------------------------------------------------- */
+
+/* Adds the voxels after a voxel in a row of the canvas that are near it. */
+static bool append_row(struct body *body, int32_t first, int64_t row, int64_t begin, int64_t end)
+{
+    for (int64_t x = begin; x < end; x++) {
+        const int32_t second = (int32_t)(row + x);
+        if (!body->occupied[second] || body->bonded[second] == ALL_SIDES) continue;
+        if (may_collide(body, first, second) && !append(&body->contacts.near_by, (struct pair){first, second}))
+            return false;
+    }
+    return true;
+}
+
+/* Adds the voxels after a voxel within so many edges of it at rest. */
+static bool append_near(struct body *body, int32_t first, double radius)
+{
+    const int64_t *length = body->census.length, most = (int64_t)radius;
+    const int64_t at[] = {place_of(body, first, AXIS_X), place_of(body, first, AXIS_Y), place_of(body, first, AXIS_Z)};
+    for (int64_t dz = 0; dz <= most && at[2] + dz < length[2]; dz++) {
+        for (int64_t dy = dz > 0 ? -most : 0; dy <= most && at[1] + dy < length[1]; dy++) {
+            const double left2 = radius * radius - (double)(dy * dy + dz * dz);
+            if (at[1] + dy < 0 || !(left2 > 0.0)) continue;
+            const int64_t width = (int64_t)ceil(sqrt(left2)) - 1; /* dx * dx < left2 */
+            const int64_t begin = dy != 0 || dz != 0 ? (at[0] > width ? at[0] - width : 0) : at[0] + 1;
+            const int64_t row = body->step[1] * (at[1] + dy) + body->step[2] * (at[2] + dz);
+            if (!append_row(body, first, row, begin, least(length[0], at[0] + width + 1))) return false;
+        }
+    }
+    return true;
+}
+
+/* All pairs that can be listed while no voxel has strayed from its start. */
+static bool list_near_by(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
-    const int64_t n_voxels = body->census.n_voxels, n_skin = count_surface(body);
-    const int64_t near_each = most_near(hops_left_out(&body->model->settings));
-    contacts->longest = longest_axis(&body->model->settings);
-    contacts->n_skin = n_skin;
-    contacts->capacity = least(n_skin * (n_skin - 1) / 2, pairs_per_voxel(body->model) * n_skin);
-    contacts->skin = malloc((size_t)(n_skin + 1) * sizeof *contacts->skin);
-    contacts->near = malloc((size_t)(n_skin * least(near_each, n_voxels) + 1) * sizeof *contacts->near);
-    contacts->stamp = malloc((size_t)n_voxels * sizeof *contacts->stamp);
-    contacts->list = malloc((size_t)(contacts->capacity + 1) * sizeof *contacts->list);
-    if (!contacts->skin || !contacts->near || !contacts->stamp || !contacts->list) return VOX_NO_MEMORY;
+    const double radius = farthest_listed(body->model) / body->model->settings.voxel_size + 2.0 * STRAYED;
+    contacts->near_by.n = 0;
+    for (int64_t i = 0; i < contacts->n_skin; i++)
+        if (!append_near(body, contacts->skin[i], radius)) return false;
+    return true;
+}
+
+static void place_skin(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    contacts->n_skin = 0;
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int32_t slot = body->slots[i];
+        if (body->bonded[slot] != ALL_SIDES) contacts->skin[contacts->n_skin++] = slot;
+    }
+}
+
+static enum vox_status allocate(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    const size_t n_slots = (size_t)body->n_slots;
+    free(contacts->skin);
+    free(contacts->search.reached);
+    free(contacts->search.queue);
+    contacts->skin = malloc((size_t)body->census.n_voxels * sizeof *contacts->skin);
+    contacts->search.reached = calloc(n_slots, sizeof *contacts->search.reached);
+    contacts->search.queue = malloc(n_slots * sizeof *contacts->search.queue);
+    return contacts->skin && contacts->search.reached && contacts->search.queue ? VOX_OK : VOX_NO_MEMORY;
+}
+
+/* Whatever is listed later has room: that never fails for want of memory. */
+static enum vox_status make_room(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    const int64_t n = contacts->n_skin;
+    contacts->most = least(n * (n - 1) / 2, pairs_per_voxel(body->model) * n);
+    if (!reserve(&contacts->now, contacts->most)) return VOX_NO_MEMORY;
+    return grid_shape(&contacts->grid, n);
+}
+
+enum vox_status contacts_shape(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    enum vox_status status = allocate(body);
+    if (status != VOX_OK) return status;
+    contacts->search.from = -1;
+    contacts->search.number = 0;
+    contacts->first_is_known = false;
     place_skin(body);
-    return VOX_OK;
+    status = make_room(body);
+    if (status != VOX_OK) return status;
+    if (!list_near_by(body)) return VOX_NO_MEMORY;
+    return reserve(&contacts->first, contacts->near_by.n) ? VOX_OK : VOX_NO_MEMORY;
+}
+
+void contacts_rest(struct body *body)
+{
+    body->contacts.travelled = 0.0;
 }
 
 void contacts_destroy(struct contacts *contacts)
 {
     free(contacts->skin);
-    free(contacts->near);
-    free(contacts->stamp);
-    free(contacts->list);
+    free(contacts->search.reached);
+    free(contacts->search.queue);
+    free(contacts->near_by.list);
+    free(contacts->first.list);
+    free(contacts->now.list);
+    grid_destroy(&contacts->grid);
 }
 
-/* By insertion: the order of one time is nearly that of the next. */
-static void sort_skin(struct body *body)
+/* ---- making a list ---------------------------------------------------------------------------------------- */
+
+static bool has_strayed(const struct body *body)
 {
-    struct skin *skin = body->contacts.skin;
+    const struct voxels *v = &body->voxels;
+    const double most = STRAYED * body->model->settings.voxel_size;
     for (int64_t i = 0; i < body->contacts.n_skin; i++) {
-        struct skin one = skin[i];
-        one.along = coordinate(body->voxels[one.voxel].position, body->contacts.longest);
-        int64_t j = i;
-        for (; j > 0 && skin[j - 1].along > one.along; j--) skin[j] = skin[j - 1];
-        skin[j] = one;
+        const int32_t slot = body->contacts.skin[i];
+        const struct vec way = vec_sub(vec_at(v->position, slot), vec_at(v->start, slot));
+        if (vec_dot(way, way) > most * most) return true;
     }
+    return false;
 }
 
-static double largest_current_size(const struct body *body)
-{
-    double largest = 0.0;
-    for (int64_t i = 0; i < body->contacts.n_skin; i++)
-        largest = fmax(largest, body->voxels[body->contacts.skin[i].voxel].size);
-    return largest;
-}
-
-/* Distance beyond which no pair is listed now. */
-static double list_reach(const struct body *body)
-{
-    const struct vox_settings *s = &body->model->settings;
-    return s->complete_contacts ? farthest_listed(body->model) : s->collision_horizon * largest_current_size(body);
-}
-
-/* Whether the original engine lists two voxels: its reach is that of the first; voxels exactly at it are out. */
-static bool engine_lists(const struct voxel *first, double distance, const struct vox_settings *s)
-{
-    return distance < s->collision_horizon * first->size && distance < engine_reach(s);
-}
-
-/* False if the list is full. */
-static bool list_contact(struct body *body, int32_t one, int32_t other, double distance)
+/* False if the list is full; so for the next two. */
+static bool list_one(struct body *body, struct pair pair)
 {
     struct contacts *contacts = &body->contacts;
-    const struct vox_settings *s = &body->model->settings;
-    const int32_t first = one < other ? one : other, second = one < other ? other : one;
-    const struct voxel *a = &body->voxels[first], *b = &body->voxels[second];
-    if (a->fixed == VOX_FIX_ALL && b->fixed == VOX_FIX_ALL) return true;
-    if (!s->complete_contacts && !engine_lists(a, distance, s)) return true;
-    if (contacts->n == contacts->capacity) return false;
-    const struct coupling *coupling = coupling_of(body->model, a->substance, b->substance);
-    contacts->list[contacts->n++] = (struct contact){first, second, coupling};
+    if (!is_due(body, pair)) return true;
+    if (contacts->now.n == contacts->most) return false;
+    contacts->now.list[contacts->now.n++] = pair;
     return true;
 }
 
-/* All pairs whose distance along the longest axis does not already part them. */
-static bool list_contacts(struct body *body)
+static bool list_from_near_by(struct body *body)
 {
-    struct contacts *contacts = &body->contacts;
-    const double reach = list_reach(body);
-    int32_t *stamp = contacts->stamp;
-    contacts->n = 0;
-    sort_skin(body);
-    for (int64_t i = 0; i < contacts->n_skin; i++) {
-        const struct skin *one = &contacts->skin[i];
-        const struct vec position = body->voxels[one->voxel].position;
-        for (int64_t k = one->near_begin; k < one->near_end; k++) stamp[contacts->near[k]] = one->voxel;
-        for (int64_t j = i + 1; j < contacts->n_skin && contacts->skin[j].along - one->along < reach; j++) {
-            const int32_t other = contacts->skin[j].voxel;
-            const struct vec apart = vec_sub(body->voxels[other].position, position);
-            const double distance2 = vec_dot(apart, apart);
-            if (distance2 >= reach * reach || stamp[other] == one->voxel) continue;
-            if (!list_contact(body, one->voxel, other, sqrt(distance2))) return false;
+    const struct pairs *near_by = &body->contacts.near_by;
+    for (int64_t i = 0; i < near_by->n; i++)
+        if (!list_one(body, near_by->list[i])) return false;
+    return true;
+}
+
+static bool list_from_grid(struct body *body)
+{
+    struct grid *grid = &body->contacts.grid;
+    grid_fill(grid, body, farthest_listed(body->model));
+    for (int64_t i = 0; i < body->contacts.n_skin; i++) {
+        const int32_t first = body->contacts.skin[i];
+        const int64_t n = grid_find(grid, body, first);
+        for (int64_t k = 0; k < n; k++) {
+            const struct pair pair = {first, grid->found[k]};
+            if (may_collide(body, first, pair.second) && !list_one(body, pair)) return false;
         }
     }
+    return true;
+}
+
+static bool list_contacts(struct body *body)
+{
+    body->contacts.now.n = 0;
+    return has_strayed(body) ? list_from_grid(body) : list_from_near_by(body);
+}
+
+static void copy(struct pairs *to, const struct pairs *from)
+{
+    to->n = from->n;
+    if (from->n > 0) memcpy(to->list, from->list, (size_t)from->n * sizeof *from->list);
+}
+
+/* At rest all controllers of a body begin with the same list. */
+static bool list_at_rest(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    if (contacts->first_is_known) {
+        copy(&contacts->now, &contacts->first);
+        return true;
+    }
+    if (!list_contacts(body)) return false;
+    copy(&contacts->first, &contacts->now);
+    contacts->first_is_known = true;
     return true;
 }
 
@@ -232,5 +359,5 @@ bool contacts_refresh(struct body *body, bool first_step)
     contacts->travelled += body->top_speed * body->census.dt / settings->voxel_size;
     if (!first_step && contacts->travelled <= (settings->collision_horizon - 1.0) / 2.0) return true;
     contacts->travelled = 0.0;
-    return list_contacts(body);
+    return first_step ? list_at_rest(body) : list_contacts(body);
 }

@@ -80,6 +80,9 @@ static inline struct vec quat_rotate(struct quat q, struct vec v)
     return vec_add(vec_scale(q.w * q.w - vec_dot(axis, axis), v), vec_add(along, across));
 }
 
+/* Of the actuation: the engine's, in single precision (section 4). */
+#define TWO_PI 6.283185005187988
+
 /* A voxel's size stays within these (section 4), in lattice edges. */
 #define SMALLEST_SCALE 0.1
 #define LARGEST_SCALE 3.0
@@ -114,13 +117,17 @@ struct coupling {
     double bend_shear; /* b2, N */
     double bend;       /* b3, N m */
     struct damper lower, upper;
+    /* so far what a bond's law needs */
     double fastest;    /* larger of stretch / mass of the two ends, 1/s2 */
     double touch_drag; /* N s/m, of voxels that touch */
     double touch_friction;
 };
 
+struct kernel;
+
 struct vox_model {
     struct vox_settings settings;
+    const struct kernel *kernel;
     int64_t cells;
     double rest_scale;           /* size / lattice edge without actuation: the edge was rounded to single precision */
     double largest_size;         /* m, of any voxel at any time */
@@ -133,87 +140,160 @@ struct vox_model {
     uint8_t *fixed;              /* [cells] */
 };
 
-static inline const struct coupling *coupling_of(const vox_model *model, const struct substance *lower,
-                                                 const struct substance *upper)
-{
-    return &model->couplings[(lower - model->substances) * model->n_substances + (upper - model->substances)];
-}
-
 /* ---- one body --------------------------------------------------------------------------------------------- */
 
-/* Number of things in a body, and its clock; found without building it. */
+/* Number of things in a body, the box that holds it, and its clock; found without building it. */
 struct census {
     int64_t n_voxels;
     int64_t n_bonds;
+    int64_t from[3], length[3]; /* cells, along each axis */
     double dt;     /* s */
     int64_t steps; /* to the end of the duration */
 };
 
-struct voxel {
-    struct vec position;     /* m */
-    struct quat orientation; /* unit */
-    double size;             /* m, of the step before */
-    struct vec force;        /* N, of bonds, contacts and fluid in this step */
-    struct vec torque;       /* N m */
-    struct vec momentum;     /* kg m/s */
-    struct vec spin;         /* kg m2/s, angular momentum in the world frame */
-    struct vec start;        /* m, initial position */
-    double phase;            /* cycles */
-    const struct substance *substance;
-    int32_t cell;            /* index in the canvas */
-    int32_t touching;        /* voxels that it touches in this step, if they are damped or rub */
-    uint8_t fixed;           /* degrees of freedom that it has not */
-};
-
-static inline struct vec velocity_of(const struct voxel *voxel)
-{
-    return vec_scale(1.0 / voxel->substance->mass, voxel->momentum);
-}
-
 enum axis { AXIS_X, AXIS_Y, AXIS_Z };
 
-struct bond {
-    int32_t lower, upper; /* voxels; the bond points from lower to upper, along +axis */
-    enum axis axis;
-    bool small;           /* which of the two frames (section 5) */
-    const struct coupling *coupling;
-    struct vec stretch;   /* m, of the last step on which the frame did not change; likewise */
-    struct vec turn_lower, turn_upper; /* rad */
+/* Arrays over the slots of a body: the cells of its box, x fastest, then y, then z, and some after them that are as
+ * empty as cells without a voxel. What is empty holds finite numbers that nothing depends on. */
+struct vecs {
+    double *x, *y, *z;
 };
 
-struct contact {
-    int32_t first, second; /* voxels, first < second */
-    const struct coupling *coupling;
+struct quats {
+    double *w, *x, *y, *z;
 };
 
-/* A voxel that may touch another. */
-struct skin {
-    int32_t voxel;
-    int64_t near_begin, near_end; /* range of contacts.near: voxels too close along bonds to collide with it */
-    double along;                 /* m, position along the canvas's longest axis; the skin is sorted by it */
+static inline struct vec vec_at(struct vecs a, int64_t i)
+{
+    return (struct vec){a.x[i], a.y[i], a.z[i]};
+}
+
+static inline void vec_put(struct vecs a, int64_t i, struct vec v)
+{
+    a.x[i] = v.x;
+    a.y[i] = v.y;
+    a.z[i] = v.z;
+}
+
+static inline struct quat quat_at(struct quats a, int64_t i)
+{
+    return (struct quat){a.w[i], a.x[i], a.y[i], a.z[i]};
+}
+
+static inline void quat_put(struct quats a, int64_t i, struct quat q)
+{
+    a.w[i] = q.w;
+    a.x[i] = q.x;
+    a.y[i] = q.y;
+    a.z[i] = q.z;
+}
+
+/* Kernels work on so many slots at a time; a voxel's forces are summed in an order that depends on it. */
+#define TILE 32
+
+/* Level of a tile that never has anything to compute. */
+#define NEVER INT32_MAX
+
+/* What a voxel is and how it moves. */
+struct voxels {
+    struct vecs position;     /* m */
+    struct quats orientation; /* unit */
+    double *size;             /* m, of the step before */
+    struct vecs force;        /* N, of bonds, contacts and fluid in this step */
+    struct vecs torque;       /* N m */
+    struct vecs momentum;     /* kg m/s */
+    struct vecs spin;         /* kg m2/s, angular momentum in the world frame */
+    struct vecs start;        /* m, initial position */
+    double *phase;            /* cycles */
+    double *amplitude;        /* strain, of the actuation */
+    double *mobility;         /* 1/kg, the inverse of the mass */
+    double *drag_rate;        /* 1/s, slow damping of the momentum */
+    double *weight;           /* N, along z */
+    double *turnability;      /* 1/(kg m2), the inverse of the inertia */
+    double *spin_kept;        /* share of the spin that slow damping leaves in a step */
+    double *mobile;           /* 0 if all its degrees of freedom are held, else 1 */
+    uint8_t *substance;       /* index */
+    uint8_t *fixed;           /* degrees of freedom that it has not */
+    int32_t *touching;        /* voxels that it touches in this step, if they are damped or rub */
 };
 
+/* The numbers with which struct coupling begins: all that a bond's law needs. */
+#define N_COEFFICIENTS ((int)(offsetof(struct coupling, fastest) / sizeof(double)))
+#define MOST_COEFFICIENTS 17
+
+/* The bonds along one axis. Arrays over slots: that of a bond's lower end, the bond pointing from it along +axis. */
+struct bonds {
+    int64_t n;
+    int32_t *lower;     /* [n] slots, ascending */
+    int64_t step;       /* slots from the lower to the upper end */
+    double *there;      /* 1 where there is a bond, else 0 */
+    double *small;      /* 1 in the small of the two frames (section 5), 0 in the large one */
+    struct vecs stretch; /* m, of the last step on which the frame did not change; likewise */
+    double *lower_y, *lower_z; /* rad, turn of the lower end */
+    struct vecs upper;  /* rad, turn of the upper end */
+    double *coefficients[MOST_COEFFICIENTS]; /* of each bond's coupling, if not all are the same */
+    int32_t *tile_level; /* the least level of an end of its bonds, for each tile */
+};
+
+/* Two voxels that may touch, first < second: slots. */
+struct pair {
+    int32_t first, second;
+};
+
+struct pairs {
+    int64_t capacity, n;
+    struct pair *list;
+};
+
+/* The skin by where it is now, in cubes. */
+struct grid {
+    int64_t n_skin;
+    int64_t most_cubes;
+    double reach;          /* m */
+    double corner[3];      /* m */
+    double edge;           /* m, of a cube */
+    int64_t length[3];     /* cubes */
+    int32_t *begin;        /* [most_cubes + 1] into `voxels` */
+    int32_t *voxels;       /* [n_skin] slots, cube after cube, ascending in each */
+    int32_t *cube_of;      /* [n_skin] */
+    int32_t *found;        /* [n_skin] slots */
+};
+
+/* The last search along bonds. */
+struct search {
+    int32_t from;          /* slot; -1 before the first */
+    int32_t number;        /* counts the searches */
+    int32_t *reached;      /* [slots] number of the last search that came here */
+    int32_t *queue;        /* [slots] */
+};
+
+/* The voxels that may touch others, and which pairs are looked at (section 10). */
 struct contacts {
     int64_t n_skin;
-    struct skin *skin;
-    int32_t *near;
-    int32_t *stamp;       /* [n_voxels] the last voxel near which this one was found */
-    int64_t capacity, n;
-    struct contact *list;
-    double travelled;     /* lattice edges, of the fastest voxel since the list was made */
-    enum axis longest;
+    int32_t *skin;         /* slots, ascending */
+    int64_t most;          /* pairs that may be listed at a time */
+    struct pairs near_by;  /* all that may be listed while no voxel has strayed from its start */
+    struct pairs first;    /* the list at rest */
+    bool first_is_known;
+    struct pairs now;      /* the list that is in use */
+    double travelled;      /* lattice edges, of the fastest voxel since the list was made */
+    struct grid grid;
+    struct search search;
 };
+
+/* Of a voxel with a bond on every side. */
+#define ALL_SIDES 63
 
 /* A face of a voxel that is exposed to the fluid. */
 struct facet {
-    int32_t voxel;
+    int32_t slot;
     int32_t corners[4]; /* counter-clockwise, seen from outside */
 };
 
 /* The outer surface of a body: where voxels meet, their corners are one. */
 struct surface {
     int64_t n_corners, n_facets;
-    int32_t (*corners_of)[8]; /* [n_voxels] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z; -1 within */
+    int32_t (*corners_of)[8]; /* [slots] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z; -1 within */
     double *share;            /* [n_corners] 1 / number of voxels that meet there */
     struct vec *corners;      /* [n_corners] m */
     struct facet *facets;
@@ -222,34 +302,62 @@ struct surface {
 struct body {
     const vox_model *model;
     struct census census;
-    struct voxel *voxels;
-    struct bond *bonds;
-    int32_t *voxel_in; /* [cells] index of the voxel, or -1 */
-    int32_t (*bonded)[6]; /* [n_voxels] voxels bonded to each along -x, +x, -y, +y, -z, +z, or -1 */
+    int64_t n_slots, n_tiles;
+    int64_t step[3];    /* slots from a cell to the next along each axis */
+    int32_t *slots;     /* [n_voxels] of the voxels, ascending */
+    int32_t *cells;     /* [n_voxels] of the canvas, likewise */
+    uint8_t *occupied;  /* 1 where there is a voxel */
+    uint8_t *bonded;    /* bits of the sides on which there is a bond: -x, +x, -y, +y, -z, +z */
+    struct voxels voxels;
+    struct bonds bonds[3]; /* along each axis */
+    const struct coupling *coupling; /* of all bonds, or NULL if they differ */
+    int64_t n_partly;   /* voxels that are held in some degrees of freedom, but not in all */
+    int32_t *partly;    /* their slots, ascending */
     struct contacts contacts;
     struct surface surface;
-    double time;       /* s */
-    double top_speed;  /* m/s, after the step before */
+    void *memory;       /* of all arrays but those of contacts and surface */
+    size_t memory_size;
+    double time;        /* s */
+    double top_speed;   /* m/s, after the step before */
 };
+
+static inline const struct substance *substance_of_voxel(const struct body *body, int64_t slot)
+{
+    return &body->model->substances[body->voxels.substance[slot]];
+}
+
+static inline const struct coupling *coupling_of(const struct body *body, int64_t lower, int64_t upper)
+{
+    const struct voxels *v = &body->voxels;
+    return &body->model->couplings[v->substance[lower] * body->model->n_substances + v->substance[upper]];
+}
+
+static inline struct vec velocity_of(const struct voxels *v, int64_t slot)
+{
+    return vec_scale(v->mobility[slot], vec_at(v->momentum, slot));
+}
 
 /* body.c */
 
 /* Checks the material codes of a body and counts what it is made of. */
 enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census);
 
-/* The body at rest at time 0. To be destroyed in any case. */
-enum vox_status body_create(struct body *body, const vox_model *model, const struct census *census,
-                            const uint8_t *material, const double *phase_cycles);
+/* Makes a body, of zeros or used before, one of these materials; its memory is kept where it is large enough. To be
+ * destroyed in any case. */
+enum vox_status body_shape(struct body *body, const vox_model *model, const struct census *census,
+                           const uint8_t *material);
 void body_destroy(struct body *body);
 
-/* Index of the cell one further along an axis (upwards or not), or -1 at the end of the canvas. */
-int64_t cell_beside(const vox_model *model, int64_t cell, enum axis axis, bool upwards);
+/* Puts the body at rest at time 0. */
+void body_rest(struct body *body, const double *phase_cycles);
+
+/* Place of a slot along an axis of the box. */
+int64_t place_of(const struct body *body, int64_t slot, enum axis axis);
+
+/* Slot of the cell beside a slot (upwards or not), or -1 beyond the box. */
+int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards);
 
 /* bond.c */
-
-/* Adds the forces and torques of all bonds to their voxels. `per_second` is 1/dt, or 0 on the first step, which has no
- * rates yet. False if a bond has diverged. */
-bool bonds_apply(struct body *body, double per_second);
 
 /* What the bonds store, and how far they are stretched. */
 struct tension {
@@ -258,13 +366,59 @@ struct tension {
 };
 struct tension bonds_tension(const struct body *body);
 
+/* motion.c */
+
+/* How the actuation stands at a time (section 4): a voxel's size is edge * (rest + gain * amplitude * sin(...)). */
+struct actuation {
+    double edge;   /* m */
+    double rest;   /* scale of a voxel without amplitude */
+    double gain;   /* share of the amplitude; 0 before the start */
+    double cycles; /* without the phase */
+};
+struct actuation actuation_at(const vox_model *model, double time);
+
+/* Adds slow damping and weight to the force on a voxel. */
+void voxel_load(struct body *body, int64_t slot);
+
+/* Moves a voxel by one time step under its forces; its speed, m/s. Makes `fine` false if it has diverged. */
+double voxel_move(struct body *body, int64_t slot, bool *fine);
+
+/* The reference kernel: bond.c and motion.c. */
+bool scalar_bonds_apply(struct body *body, double per_second);
+bool scalar_voxels_advance(struct body *body);
+
+/* kernels.c */
+
+/* One way to compute what takes nearly all the time. */
+struct kernel {
+    const char *name;
+    bool (*usable)(void); /* whether this processor can */
+    /* Adds the forces and torques of all bonds to their voxels. `per_second` is 1/dt, or 0 on the first step, which has
+     * no rates yet. False if a bond has diverged. */
+    bool (*bonds_apply)(struct body *body, double per_second);
+    /* Moves every voxel by one time step under the forces that were added to it. False if one has diverged. */
+    bool (*voxels_advance)(struct body *body);
+};
+
+extern const struct kernel scalar_kernel, generic_kernel, avx2_kernel, avx512_kernel;
+
 /* contact_list.c */
 
-enum vox_status contacts_create(struct body *body);
+enum vox_status contacts_shape(struct body *body);
+void contacts_rest(struct body *body);
 void contacts_destroy(struct contacts *contacts);
 
-/* Makes the list of possible contacts anew where that is due; false if they do not fit. */
+/* Makes the list of possible contacts anew where that is due; false if there are too many. */
 bool contacts_refresh(struct body *body, bool first_step);
+
+/* contact_grid.c */
+
+enum vox_status grid_shape(struct grid *grid, int64_t n_skin);
+void grid_destroy(struct grid *grid);
+void grid_fill(struct grid *grid, const struct body *body, double reach);
+
+/* Writes the skin after a voxel that is in reach of it to `found`, ascending, and returns how many there are. */
+int64_t grid_find(const struct grid *grid, const struct body *body, int32_t first);
 
 /* contact_force.c */
 
@@ -273,7 +427,7 @@ void contacts_apply(struct body *body);
 
 /* surface.c */
 
-enum vox_status surface_create(struct body *body);
+enum vox_status surface_shape(struct body *body);
 void surface_destroy(struct surface *surface);
 
 /* fluid.c */
@@ -285,12 +439,7 @@ void fluid_apply(struct body *body);
 
 /* Adds the push and the friction of the floor to the force on a voxel, which has all others already; a voxel that
  * sticks loses its lateral momentum. */
-struct vec floor_apply(const vox_model *model, struct voxel *voxel, struct vec force, double dt);
-
-/* motion.c */
-
-/* Moves every voxel by one time step under the forces that were added to it. False if one has diverged. */
-bool voxels_advance(struct body *body);
+void floor_apply(struct body *body, int64_t slot);
 
 /* sample.c */
 

@@ -236,6 +236,7 @@ enum vox_status vox_model_create(const struct vox_settings *settings, const stru
     vox_model *made = calloc(1, sizeof *made);
     if (!made) return VOX_NO_MEMORY;
     made->settings = *settings;
+    made->kernel = &scalar_kernel;
     status = fill(made, palette, n_codes, fixed, culprit);
     if (status != VOX_OK) {
         vox_model_destroy(made);

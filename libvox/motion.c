@@ -1,30 +1,28 @@
 /* How a voxel moves and how its size follows the actuation (sections 4, 7 and 8). */
 #include "internal.h"
 
-static const double TWO_PI = 6.283185005187988; /* single precision */
 static const double SETTLING = 0.5; /* share of the time until the start in which a size takes to the rounded edge */
 
-/* Share of the amplitude that is reached at a time after the start. */
-static double ramp_at(double time, const struct vox_settings *s)
-{
-    const double since = time - s->start_time;
-    return since < s->ramp ? since / s->ramp : 1.0;
-}
-
-/* Size at a time; a size beyond the limits leaves the old one as it is. */
-static double size_at(double time, const struct voxel *voxel, const vox_model *model)
+struct actuation actuation_at(const vox_model *model, double time)
 {
     const struct vox_settings *s = &model->settings;
-    const double edge = s->voxel_size, amplitude = voxel->substance->strain_amplitude;
+    struct actuation a = {.edge = s->voxel_size, .rest = model->rest_scale, .cycles = time / s->period};
     if (time < s->start_time) {
-        const double settled = fmin(1.0, time / (SETTLING * s->start_time));
-        return edge * (1.0 + settled * (model->rest_scale - 1.0));
+        a.rest = 1.0 + fmin(1.0, time / (SETTLING * s->start_time)) * (model->rest_scale - 1.0);
+        return a;
     }
-    if (amplitude == 0.0) return edge * model->rest_scale;
-    const double cycles = time / s->period + voxel->phase;
-    const double size = edge * (model->rest_scale + ramp_at(time, s) * amplitude * sin(TWO_PI * cycles));
-    if (size < SMALLEST_SCALE * edge && size < voxel->size) return voxel->size;
-    if (size > LARGEST_SCALE * edge && size > voxel->size) return voxel->size;
+    const double since = time - s->start_time;
+    a.gain = since < s->ramp ? since / s->ramp : 1.0;
+    return a;
+}
+
+/* A size beyond the limits leaves the old one as it is. */
+static double size_of(const struct actuation *a, double amplitude, double phase, double last)
+{
+    if (a->gain == 0.0 || amplitude == 0.0) return a->edge * a->rest;
+    const double size = a->edge * (a->rest + a->gain * amplitude * sin(TWO_PI * (a->cycles + phase)));
+    if (size < SMALLEST_SCALE * a->edge && size < last) return last;
+    if (size > LARGEST_SCALE * a->edge && size > last) return last;
     return size;
 }
 
@@ -38,15 +36,17 @@ static struct quat turned(struct quat q, struct vec spin_rate, double dt)
     return (struct quat){r.w * norm, r.x * norm, r.y * norm, r.z * norm};
 }
 
-static void turn(struct voxel *voxel, double dt)
+static void turn(const struct voxels *v, int64_t slot, double dt)
 {
-    const struct substance *s = voxel->substance;
-    if (voxel->fixed & VOX_FIX_ROTATION_X) voxel->torque.x = 0.0;
-    if (voxel->fixed & VOX_FIX_ROTATION_Y) voxel->torque.y = 0.0;
-    if (voxel->fixed & VOX_FIX_ROTATION_Z) voxel->torque.z = 0.0;
-    voxel->spin = vec_add(voxel->spin, vec_scale(dt, voxel->torque));
-    voxel->spin = vec_scale(1.0 - s->slow_spin_rate * dt, voxel->spin);
-    voxel->orientation = turned(voxel->orientation, vec_scale(1.0 / s->inertia, voxel->spin), dt);
+    struct vec torque = vec_at(v->torque, slot);
+    if (v->fixed[slot] & VOX_FIX_ROTATION_X) torque.x = 0.0;
+    if (v->fixed[slot] & VOX_FIX_ROTATION_Y) torque.y = 0.0;
+    if (v->fixed[slot] & VOX_FIX_ROTATION_Z) torque.z = 0.0;
+    const struct vec driven = vec_add(vec_at(v->spin, slot), vec_scale(dt, torque));
+    const struct vec spin = vec_scale(v->spin_kept[slot], driven);
+    const struct vec rate = vec_scale(v->turnability[slot], spin);
+    vec_put(v->spin, slot, spin);
+    quat_put(v->orientation, slot, turned(quat_at(v->orientation, slot), rate, dt));
 }
 
 static void hold_coordinate(double *position, double *momentum, double start)
@@ -56,51 +56,64 @@ static void hold_coordinate(double *position, double *momentum, double start)
 }
 
 /* A voxel keeps the coordinates that it is not free to change, and its orientation if it may turn about no axis. */
-static void hold(struct voxel *voxel)
+static void hold(const struct voxels *v, int64_t i)
 {
-    const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z;
-    if (voxel->fixed & VOX_FIX_X) hold_coordinate(&voxel->position.x, &voxel->momentum.x, voxel->start.x);
-    if (voxel->fixed & VOX_FIX_Y) hold_coordinate(&voxel->position.y, &voxel->momentum.y, voxel->start.y);
-    if (voxel->fixed & VOX_FIX_Z) hold_coordinate(&voxel->position.z, &voxel->momentum.z, voxel->start.z);
-    if ((voxel->fixed & rotation) != rotation) return;
-    voxel->orientation = (struct quat){1.0, 0.0, 0.0, 0.0};
-    voxel->spin = (struct vec){0.0, 0.0, 0.0};
+    const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z, fixed = v->fixed[i];
+    if (fixed & VOX_FIX_X) hold_coordinate(&v->position.x[i], &v->momentum.x[i], v->start.x[i]);
+    if (fixed & VOX_FIX_Y) hold_coordinate(&v->position.y[i], &v->momentum.y[i], v->start.y[i]);
+    if (fixed & VOX_FIX_Z) hold_coordinate(&v->position.z[i], &v->momentum.z[i], v->start.z[i]);
+    if ((fixed & rotation) != rotation) return;
+    quat_put(v->orientation, i, (struct quat){1.0, 0.0, 0.0, 0.0});
+    vec_put(v->spin, i, (struct vec){0.0, 0.0, 0.0});
 }
 
-/* Semi-implicit Euler: the new momentum moves the voxel. The floor comes last, since friction looks at all other
- * forces. Returns the speed. */
-static double move(struct voxel *voxel, const vox_model *model, double dt)
+void voxel_load(struct body *body, int64_t slot)
 {
-    const struct substance *s = voxel->substance;
-    struct vec force = vec_add(vec_scale(-s->slow_drag / s->mass, voxel->momentum), voxel->force);
-    force.z += s->mass * model->settings.gravity;
-    if (model->settings.floor) force = floor_apply(model, voxel, force, dt);
+    const struct voxels *v = &body->voxels;
+    const struct vec drag = vec_scale(-v->drag_rate[slot], vec_at(v->momentum, slot));
+    struct vec force = vec_add(drag, vec_at(v->force, slot));
+    force.z += v->weight[slot];
+    vec_put(v->force, slot, force);
+}
 
-    voxel->momentum = vec_add(voxel->momentum, vec_scale(dt, force));
-    voxel->position = vec_add(voxel->position, vec_scale(dt, velocity_of(voxel)));
-    turn(voxel, dt);
-    if (voxel->fixed) hold(voxel);
-    const struct vec velocity = velocity_of(voxel);
+/* Semi-implicit Euler: the new momentum moves the voxel. */
+double voxel_move(struct body *body, int64_t slot, bool *fine)
+{
+    const struct voxels *v = &body->voxels;
+    const double dt = body->census.dt, too_far = body->model->too_far;
+    vec_put(v->momentum, slot, vec_add(vec_at(v->momentum, slot), vec_scale(dt, vec_at(v->force, slot))));
+    vec_put(v->position, slot, vec_add(vec_at(v->position, slot), vec_scale(dt, velocity_of(v, slot))));
+    turn(v, slot, dt);
+    if (v->fixed[slot]) hold(v, slot);
+    const struct vec way = vec_sub(vec_at(v->position, slot), vec_at(v->start, slot));
+    const struct vec spin = vec_at(v->spin, slot), velocity = velocity_of(v, slot);
+    *fine &= vec_dot(way, way) <= too_far * too_far; /* false for a NaN */
+    *fine &= isfinite(vec_dot(spin, spin) * v->turnability[slot]);
     return sqrt(vec_dot(velocity, velocity));
 }
 
-bool voxels_advance(struct body *body)
+/* The floor comes last, since friction looks at all other forces. */
+static void voxel_advance(struct body *body, int64_t slot, bool *fine)
 {
-    const double dt = body->census.dt, too_far = body->model->too_far;
+    voxel_load(body, slot);
+    if (body->model->settings.floor) floor_apply(body, slot);
+    const double speed = voxel_move(body, slot, fine);
+    if (speed > body->top_speed) body->top_speed = speed;
+}
+
+bool scalar_voxels_advance(struct body *body)
+{
+    const struct voxels *v = &body->voxels;
+    const struct actuation actuation = actuation_at(body->model, body->time);
     bool fine = true;
     body->top_speed = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        struct voxel *voxel = &body->voxels[i];
-        if (voxel->fixed != VOX_FIX_ALL) {
-            const double speed = move(voxel, body->model, dt);
-            if (speed > body->top_speed) body->top_speed = speed;
-            const struct vec way = vec_sub(voxel->position, voxel->start);
-            fine &= vec_dot(way, way) <= too_far * too_far; /* false for a NaN */
-            fine &= isfinite(vec_dot(voxel->spin, voxel->spin) / voxel->substance->inertia);
-        }
-        voxel->size = size_at(body->time, voxel, body->model);
-        voxel->force = voxel->torque = (struct vec){0};
+        const int64_t slot = body->slots[i];
+        if (v->fixed[slot] != VOX_FIX_ALL) voxel_advance(body, slot, &fine);
+        v->size[slot] = size_of(&actuation, v->amplitude[slot], v->phase[slot], v->size[slot]);
+        vec_put(v->force, slot, (struct vec){0.0, 0.0, 0.0});
+        vec_put(v->torque, slot, (struct vec){0.0, 0.0, 0.0});
     }
-    body->time += dt;
+    body->time += body->census.dt;
     return fine;
 }

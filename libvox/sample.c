@@ -14,37 +14,36 @@ static struct vec mean_position(const struct body *body, double from_x)
     struct vec moment = {0};
     double mass = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const struct voxel *voxel = &body->voxels[i];
-        if (voxel->start.x < from_x) continue;
-        moment = vec_add(moment, vec_scale(voxel->substance->mass, voxel->position));
-        mass += voxel->substance->mass;
+        const int64_t slot = body->slots[i];
+        if (body->voxels.start.x[slot] < from_x) continue;
+        const double own = substance_of_voxel(body, slot)->mass;
+        moment = vec_add(moment, vec_scale(own, vec_at(body->voxels.position, slot)));
+        mass += own;
     }
     return vec_scale(1.0 / mass, moment);
 }
 
 static double largest_start_x(const struct body *body)
 {
-    double largest = 0.0;
-    for (int64_t i = 0; i < body->census.n_voxels; i++) largest = fmax(largest, body->voxels[i].start.x);
-    return largest;
+    return body->voxels.start.x[body->census.length[0] - 1]; /* the box ends where the last voxel is */
 }
 
 static void write_voxels(const struct body *body, double *out)
 {
-    const struct vec nowhere = {NAN, NAN, NAN};
-    for (int64_t cell = 0; cell < body->model->cells; cell++) {
-        const int32_t voxel = body->voxel_in[cell];
-        write_vec(out + 3 * cell, voxel < 0 ? nowhere : body->voxels[voxel].position);
-    }
+    for (int64_t i = 0; i < 3 * body->model->cells; i++) out[i] = NAN;
+    for (int64_t i = 0; i < body->census.n_voxels; i++)
+        write_vec(out + 3 * body->cells[i], vec_at(body->voxels.position, body->slots[i]));
 }
 
 static double kinetic_energy(const struct body *body)
 {
+    const struct voxels *v = &body->voxels;
     double energy = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const struct voxel *v = &body->voxels[i];
-        energy += 0.5 * vec_dot(v->momentum, v->momentum) / v->substance->mass;
-        energy += 0.5 * vec_dot(v->spin, v->spin) / v->substance->inertia;
+        const int64_t slot = body->slots[i];
+        const struct vec momentum = vec_at(v->momentum, slot), spin = vec_at(v->spin, slot);
+        energy += 0.5 * vec_dot(momentum, momentum) * v->mobility[slot];
+        energy += 0.5 * vec_dot(spin, spin) * v->turnability[slot];
     }
     return energy;
 }
@@ -64,11 +63,14 @@ static void write_tension(const struct body *body, const struct vox_tracks *trac
 
 static void write_momentum(const struct body *body, double *out)
 {
+    const struct voxels *v = &body->voxels;
     struct vec linear = {0}, angular = {0};
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const struct voxel *v = &body->voxels[i];
-        linear = vec_add(linear, v->momentum);
-        angular = vec_add(angular, vec_add(vec_cross(v->position, v->momentum), v->spin));
+        const int64_t slot = body->slots[i];
+        const struct vec momentum = vec_at(v->momentum, slot);
+        const struct vec orbital = vec_cross(vec_at(v->position, slot), momentum);
+        linear = vec_add(linear, momentum);
+        angular = vec_add(angular, vec_add(orbital, vec_at(v->spin, slot)));
     }
     write_vec(out, linear);
     write_vec(out + 3, angular);
@@ -76,7 +78,8 @@ static void write_momentum(const struct body *body, double *out)
 
 void sample_write(const struct body *body, const struct vox_tracks *tracks, int64_t row)
 {
-    if (tracks->tip) write_vec(tracks->tip + 3 * row, body->voxels[body->census.n_voxels - 1].position);
+    const int32_t last = body->slots[body->census.n_voxels - 1];
+    if (tracks->tip) write_vec(tracks->tip + 3 * row, vec_at(body->voxels.position, last));
     if (tracks->face) write_vec(tracks->face + 3 * row, mean_position(body, largest_start_x(body)));
     if (tracks->body) write_vec(tracks->body + 3 * row, mean_position(body, 0.0));
     if (tracks->voxels) write_voxels(body, tracks->voxels + 3 * row * body->model->cells);

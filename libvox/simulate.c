@@ -1,4 +1,6 @@
 /* The calls on a batch: check everything, then simulate body after body (sections 3 and 7). */
+#include <string.h>
+
 #include "internal.h"
 
 static const double MOST_CYCLES = 1e6;
@@ -62,12 +64,13 @@ static enum vox_status check_body(const vox_model *model, const uint8_t *materia
 /* False if the body diverged. All forces are complete before any voxel moves. */
 static bool advance(struct body *body, bool first_step)
 {
-    const bool collides = body->model->settings.self_collision;
+    const vox_model *model = body->model;
+    const bool collides = model->settings.self_collision;
     if (collides && !contacts_refresh(body, first_step)) return false;
-    if (!bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt)) return false;
+    if (!model->kernel->bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt)) return false;
     if (collides) contacts_apply(body);
-    if (body->model->settings.fluid_drag > 0.0) fluid_apply(body);
-    return voxels_advance(body);
+    if (model->settings.fluid_drag > 0.0) fluid_apply(body);
+    return model->kernel->voxels_advance(body);
 }
 
 /* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step at which it
@@ -88,17 +91,21 @@ static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_s
     }
 }
 
-static enum vox_status simulate_one(const vox_model *model, const uint8_t *material, const double *phase_cycles,
-                                    int64_t n_samples, const int64_t *sample_steps, const struct vox_tracks *tracks,
-                                    int64_t row, int64_t *diverged_step)
-{
-    struct census census;
-    enum vox_status status = body_census(model, material, &census);
-    if (status != VOX_OK) return status;
+/* A body that is simulated with one controller after the other. */
+struct workshop {
     struct body body;
-    status = body_create(&body, model, &census, material, phase_cycles);
-    if (status == VOX_OK) *diverged_step = run(&body, n_samples, sample_steps, tracks, row);
-    body_destroy(&body);
+    const uint8_t *material; /* of the body; NULL if there is none */
+};
+
+/* Makes the body of these materials, unless it is the one that is there. */
+static enum vox_status set_body(struct workshop *workshop, const vox_model *model, const uint8_t *material)
+{
+    if (workshop->material && memcmp(workshop->material, material, (size_t)model->cells) == 0) return VOX_OK;
+    struct census census;
+    workshop->material = NULL;
+    enum vox_status status = body_census(model, material, &census);
+    if (status == VOX_OK) status = body_shape(&workshop->body, model, &census, material);
+    if (status == VOX_OK) workshop->material = material;
     return status;
 }
 
@@ -125,12 +132,16 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
         status = check_body(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples));
         *culprit = i;
     }
+    struct workshop workshop = {0};
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
-        const int64_t at = i * model->cells;
-        status = simulate_one(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples),
-                              tracks, i * n_samples, &diverged_step[i]);
         *culprit = i;
+        status = set_body(&workshop, model, material + i * model->cells);
+        if (status != VOX_OK) break;
+        body_rest(&workshop.body, phase_cycles + i * model->cells);
+        diverged_step[i] =
+            run(&workshop.body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
     }
+    body_destroy(&workshop.body);
     if (status == VOX_OK) *culprit = -1;
     return status;
 }

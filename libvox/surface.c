@@ -25,19 +25,20 @@ static unsigned joined_to(unsigned one, unsigned cells)
     return joined;
 }
 
-/* Voxel in the cell (x, y, z), or -1; also beyond the canvas. */
-static int32_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z)
+/* Slot of the voxel at (x, y, z) in the box, or -1; also beyond the box. */
+static int64_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z)
 {
-    const struct vox_settings *s = &body->model->settings;
-    if (x < 0 || y < 0 || z < 0 || x >= s->nx || y >= s->ny || z >= s->nz) return -1;
-    return body->voxel_in[x + s->nx * (y + s->ny * z)];
+    const int64_t *length = body->census.length;
+    if (x < 0 || y < 0 || z < 0 || x >= length[0] || y >= length[1] || z >= length[2]) return -1;
+    const int64_t slot = x + body->step[1] * y + body->step[2] * z;
+    return body->occupied[slot] ? slot : -1;
 }
 
 /* Makes one corner for each group of joined voxels around the lattice point (x, y, z). */
 static void meet_at(struct body *body, int64_t x, int64_t y, int64_t z)
 {
     struct surface *surface = &body->surface;
-    int32_t voxels[8];
+    int64_t voxels[8];
     unsigned left = 0;
     for (int i = 0; i < 8; i++) {
         voxels[i] = voxel_at(body, x - 1 + (i & 1), y - 1 + (i >> 1 & 1), z - 1 + (i >> 2));
@@ -58,60 +59,60 @@ static void meet_at(struct body *body, int64_t x, int64_t y, int64_t z)
 
 static void join_corners(struct body *body)
 {
-    const struct vox_settings *s = &body->model->settings;
-    for (int64_t z = 0; z <= s->nz; z++)
-        for (int64_t y = 0; y <= s->ny; y++)
-            for (int64_t x = 0; x <= s->nx; x++) meet_at(body, x, y, z);
+    const int64_t *length = body->census.length;
+    for (int64_t z = 0; z <= length[2]; z++)
+        for (int64_t y = 0; y <= length[1]; y++)
+            for (int64_t x = 0; x <= length[0]; x++) meet_at(body, x, y, z);
 }
 
 /* ---- faces ------------------------------------------------------------------------------------------------ */
 
-static bool at_border(const vox_model *model, int64_t cell)
+static bool at_border(const struct body *body, int64_t slot)
 {
     for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
-        if (cell_beside(model, cell, axis, false) < 0 || cell_beside(model, cell, axis, true) < 0) return true;
+        if (slot_beside(body, slot, axis, false) < 0 || slot_beside(body, slot, axis, true) < 0) return true;
     return false;
 }
 
-/* Marks the empty cells that can be reached from beyond the canvas. `queue` has room for all cells. */
+/* Marks the empty slots that can be reached from beyond the box. `queue` has room for all slots. */
 static void flood(const struct body *body, bool *outside, int32_t *queue)
 {
-    const vox_model *model = body->model;
     int64_t n = 0;
-    for (int64_t cell = 0; cell < model->cells; cell++) {
-        outside[cell] = body->voxel_in[cell] < 0 && at_border(model, cell);
-        if (outside[cell]) queue[n++] = (int32_t)cell;
+    for (int64_t slot = 0; slot < body->n_slots; slot++) {
+        outside[slot] = !body->occupied[slot] && at_border(body, slot);
+        if (outside[slot]) queue[n++] = (int32_t)slot;
     }
     for (int64_t i = 0; i < n; i++) {
         for (int side = 0; side < 6; side++) {
-            const int64_t next = cell_beside(model, queue[i], (enum axis)(side / 2), side % 2);
-            if (next < 0 || outside[next] || body->voxel_in[next] >= 0) continue;
+            const int64_t next = slot_beside(body, queue[i], (enum axis)(side / 2), side % 2);
+            if (next < 0 || outside[next] || body->occupied[next]) continue;
             outside[next] = true;
             queue[n++] = (int32_t)next;
         }
     }
 }
 
-static struct facet facet_of(const struct body *body, int32_t voxel, enum axis axis, bool upwards)
+static struct facet facet_of(const struct body *body, int32_t slot, enum axis axis, bool upwards)
 {
-    const int32_t *corners = body->surface.corners_of[voxel];
+    const int32_t *corners = body->surface.corners_of[slot];
     const int along = 1 << axis, first = 1 << (axis + 1) % 3, second = 1 << (axis + 2) % 3;
     const int from = upwards ? along : 0;
     if (upwards)
         return (struct facet){
-            voxel, {corners[from], corners[from + first], corners[from + first + second], corners[from + second]}};
+            slot, {corners[from], corners[from + first], corners[from + first + second], corners[from + second]}};
     return (struct facet){
-        voxel, {corners[from], corners[from + second], corners[from + first + second], corners[from + first]}};
+        slot, {corners[from], corners[from + second], corners[from + first + second], corners[from + first]}};
 }
 
 static void find_facets(struct body *body, const bool *outside)
 {
     struct surface *surface = &body->surface;
-    for (int32_t voxel = 0; voxel < body->census.n_voxels; voxel++) {
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int32_t slot = body->slots[i];
         for (int side = 0; side < 6; side++) {
             const enum axis axis = (enum axis)(side / 2);
-            const int64_t next = cell_beside(body->model, body->voxels[voxel].cell, axis, side % 2);
-            if (next < 0 || outside[next]) surface->facets[surface->n_facets++] = facet_of(body, voxel, axis, side % 2);
+            const int64_t next = slot_beside(body, slot, axis, side % 2);
+            if (next < 0 || outside[next]) surface->facets[surface->n_facets++] = facet_of(body, slot, axis, side % 2);
         }
     }
 }
@@ -123,16 +124,18 @@ static void drop_inner_corners(struct body *body, bool *outer)
     for (int64_t i = 0; i < surface->n_corners; i++) outer[i] = false;
     for (int64_t i = 0; i < surface->n_facets; i++)
         for (int corner = 0; corner < 4; corner++) outer[surface->facets[i].corners[corner]] = true;
-    for (int64_t i = 0; i < body->census.n_voxels; i++)
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        int32_t *corners = surface->corners_of[body->slots[i]];
         for (int corner = 0; corner < 8; corner++)
-            if (!outer[surface->corners_of[i][corner]]) surface->corners_of[i][corner] = -1;
+            if (!outer[corners[corner]]) corners[corner] = -1;
+    }
 }
 
 static enum vox_status place_facets(struct body *body)
 {
-    const size_t cells = (size_t)body->model->cells;
-    bool *outside = malloc(cells * sizeof *outside);
-    int32_t *queue = malloc(cells * sizeof *queue);
+    const size_t n_slots = (size_t)body->n_slots;
+    bool *outside = malloc(n_slots * sizeof *outside);
+    int32_t *queue = malloc(n_slots * sizeof *queue);
     bool *outer = malloc((size_t)body->surface.n_corners * sizeof *outer);
     const bool enough = outside && queue && outer;
     if (enough) {
@@ -146,11 +149,13 @@ static enum vox_status place_facets(struct body *body)
     return enough ? VOX_OK : VOX_NO_MEMORY;
 }
 
-enum vox_status surface_create(struct body *body)
+enum vox_status surface_shape(struct body *body)
 {
     struct surface *surface = &body->surface;
     const size_t n = (size_t)body->census.n_voxels;
-    surface->corners_of = malloc(n * sizeof *surface->corners_of);
+    surface_destroy(surface);
+    *surface = (struct surface){0};
+    surface->corners_of = malloc((size_t)body->n_slots * sizeof *surface->corners_of);
     surface->share = malloc(8 * n * sizeof *surface->share);
     surface->corners = malloc(8 * n * sizeof *surface->corners);
     surface->facets = malloc(6 * n * sizeof *surface->facets);

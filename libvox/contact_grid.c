@@ -1,0 +1,135 @@
+/* The skin of a body by where it is now: cubes at least as wide as the reach, so that whatever is in reach of a voxel
+ * lies in its cube or in one beside it. */
+#include <stdlib.h>
+
+#include "internal.h"
+
+static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body that is spread widely gets wider cubes */
+
+enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
+{
+    grid_destroy(grid);
+    grid->n_skin = n_skin;
+    grid->most_cubes = CUBES_PER_VOXEL * n_skin + 1;
+    grid->begin = malloc((size_t)(grid->most_cubes + 1) * sizeof *grid->begin);
+    grid->voxels = malloc((size_t)(n_skin + 1) * sizeof *grid->voxels);
+    grid->cube_of = malloc((size_t)(n_skin + 1) * sizeof *grid->cube_of);
+    grid->found = malloc((size_t)(n_skin + 1) * sizeof *grid->found);
+    return grid->begin && grid->voxels && grid->cube_of && grid->found ? VOX_OK : VOX_NO_MEMORY;
+}
+
+void grid_destroy(struct grid *grid)
+{
+    free(grid->begin);
+    free(grid->voxels);
+    free(grid->cube_of);
+    free(grid->found);
+    *grid = (struct grid){0};
+}
+
+struct span {
+    double least[3], most[3];
+};
+
+static void coordinates(const struct body *body, int64_t slot, double at[3])
+{
+    const struct vec position = vec_at(body->voxels.position, slot);
+    at[0] = position.x;
+    at[1] = position.y;
+    at[2] = position.z;
+}
+
+static struct span span_of(const struct body *body)
+{
+    struct span span = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    for (int64_t i = 0; i < body->contacts.n_skin; i++) {
+        double at[3];
+        coordinates(body, body->contacts.skin[i], at);
+        for (int axis = 0; axis < 3; axis++) {
+            span.least[axis] = fmin(span.least[axis], at[axis]);
+            span.most[axis] = fmax(span.most[axis], at[axis]);
+        }
+    }
+    return span;
+}
+
+/* Widens the cubes until there is room for all. */
+static void choose_cubes(struct grid *grid, const struct span *span, double reach)
+{
+    double cubes;
+    grid->edge = reach;
+    do {
+        cubes = 1.0;
+        for (int axis = 0; axis < 3; axis++) {
+            grid->corner[axis] = span->least[axis];
+            cubes *= floor((span->most[axis] - span->least[axis]) / grid->edge) + 1.0;
+        }
+        grid->edge *= cubes > (double)grid->most_cubes ? 1.5 : 1.0;
+    } while (cubes > (double)grid->most_cubes);
+    for (int axis = 0; axis < 3; axis++)
+        grid->length[axis] = (int64_t)((span->most[axis] - span->least[axis]) / grid->edge) + 1;
+}
+
+/* Place of a coordinate along an axis of the grid; rounding may put it beyond the end. */
+static int64_t place_in(const struct grid *grid, int axis, double at)
+{
+    const int64_t place = (int64_t)((at - grid->corner[axis]) / grid->edge);
+    return place < grid->length[axis] ? place : grid->length[axis] - 1;
+}
+
+static int64_t cube_at(const struct grid *grid, const int64_t place[3])
+{
+    return place[0] + grid->length[0] * (place[1] + grid->length[1] * place[2]);
+}
+
+void grid_fill(struct grid *grid, const struct body *body, double reach)
+{
+    const struct span span = span_of(body);
+    grid->reach = reach;
+    choose_cubes(grid, &span, reach);
+    const int64_t n_cubes = grid->length[0] * grid->length[1] * grid->length[2];
+    for (int64_t cube = 0; cube <= n_cubes; cube++) grid->begin[cube] = 0;
+    for (int64_t i = 0; i < grid->n_skin; i++) {
+        double at[3];
+        int64_t place[3];
+        coordinates(body, body->contacts.skin[i], at);
+        for (int axis = 0; axis < 3; axis++) place[axis] = place_in(grid, axis, at[axis]);
+        grid->cube_of[i] = (int32_t)cube_at(grid, place);
+        grid->begin[grid->cube_of[i]]++;
+    }
+    for (int64_t cube = 1; cube <= n_cubes; cube++) grid->begin[cube] += grid->begin[cube - 1];
+    for (int64_t i = grid->n_skin - 1; i >= 0; i--) grid->voxels[--grid->begin[grid->cube_of[i]]] = body->contacts.skin[i];
+}
+
+/* Adds the voxels of a cube that come after one and are in reach of it, in their order. */
+static int64_t find_in_cube(const struct grid *grid, const struct body *body, int64_t cube, int32_t first, int64_t n)
+{
+    const struct vec position = vec_at(body->voxels.position, first);
+    for (int32_t k = grid->begin[cube]; k < grid->begin[cube + 1]; k++) {
+        const int32_t other = grid->voxels[k];
+        if (other <= first) continue;
+        const struct vec apart = vec_sub(vec_at(body->voxels.position, other), position);
+        if (!(vec_dot(apart, apart) < grid->reach * grid->reach)) continue;
+        int64_t at = n++;
+        for (; at > 0 && grid->found[at - 1] > other; at--) grid->found[at] = grid->found[at - 1];
+        grid->found[at] = other;
+    }
+    return n;
+}
+
+int64_t grid_find(const struct grid *grid, const struct body *body, int32_t first)
+{
+    double at[3];
+    int64_t from[3], to[3], n = 0;
+    coordinates(body, first, at);
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t place = place_in(grid, axis, at[axis]);
+        from[axis] = place > 0 ? place - 1 : 0;
+        to[axis] = place < grid->length[axis] - 1 ? place + 1 : place;
+    }
+    for (int64_t z = from[2]; z <= to[2]; z++)
+        for (int64_t y = from[1]; y <= to[1]; y++)
+            for (int64_t x = from[0]; x <= to[0]; x++)
+                n = find_in_cube(grid, body, cube_at(grid, (int64_t[]){x, y, z}), first, n);
+    return n;
+}
