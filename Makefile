@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
-SOURCES := pyproject.toml setup.py $(wildcard libvox/*.c libvox/*.h libvox/*.py libvox/include/*.h)
+SOURCES := pyproject.toml setup.py $(wildcard lib*/*.c lib*/*.h lib*/*.py lib*/include/*.h)
 
 .PHONY: run test lint types imports unit sanitize fuzz clean
 
@@ -32,16 +32,16 @@ imports: $(VENV)/developing
 unit: $(VENV)/developing
 	$(BIN)/python -m pytest
 
-## sanitize: libvox and its tests under the address and undefined-behaviour sanitizers
+## sanitize: the C libraries and their tests under the address and undefined-behaviour sanitizers
 sanitize: $(VENV)/developing
-	PYTHON=$(BIN)/python libvox/sanitize.sh
+	PYTHON=$(BIN)/python tests/sanitize.sh
 
 ## fuzz: SECONDS of inputs that nobody would write, for libvox, the reader of VXA files and that of configurations
 fuzz: $(VENV)/fuzzing
 	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info libvox/evoframe_libvox/_vox.c libvox/evoframe_libvox/_vox.*.so
+	rm -rf $(VENV) build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)

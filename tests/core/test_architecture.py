@@ -50,5 +50,6 @@ def test_public_names_exist_and_say_what_they_are(name: str) -> None:
 
 
 def test_every_package_is_typed() -> None:
-    packages = [ROOT / "src/evoframe", ROOT / "libvox/evoframe_libvox", *ROOT.glob("plugins/*/evoframe_*")]
+    packages = [ROOT / "src/evoframe", *ROOT.glob("lib*/evoframe_*"), *ROOT.glob("plugins/*/evoframe_*")]
+    assert len(packages) == 1 + 2 + 7
     assert all((package / "py.typed").exists() for package in packages)

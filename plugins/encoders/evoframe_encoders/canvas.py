@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -14,9 +13,8 @@ Canvas: TypeAlias = tuple[int, int, int]
 """Number of voxels along x, y and z."""
 
 
-@lru_cache(maxsize=8)
 def voxel_points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
-    """Return the coordinates of all voxels, ``float64[X, Y, Z, 3]``, read-only.
+    """Return the coordinates of all voxels, ``float64[X, Y, Z, 3]``.
 
     Args:
         canvas: Number of voxels along x, y and z.
@@ -25,6 +23,4 @@ def voxel_points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
     axes = [np.linspace(-1.0, 1.0, n) if normalized else np.arange(n, dtype=np.float64) for n in canvas]
     if normalized:
         axes = [axis if len(axis) > 1 else np.zeros(1) for axis in axes]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    points.setflags(write=False)
-    return points
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, Design, Network
-from evoframe_encoders.canvas import voxel_points
+from evoframe_encoders.canvas import Canvas, voxel_points
 
 __all__ = ["CppnController"]
 
 _LARGEST_OFFSET = 2.0 * math.pi
+
+
+@lru_cache(maxsize=8)
+def _points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
+    """Return what a network sees of each voxel if that contracts, ``float64[X * Y * Z, 4]``."""
+    points = voxel_points(canvas, normalized).reshape(-1, 3)
+    return np.concatenate([points, np.full((len(points), 1), float(CONTRACTILE))], axis=1)
 
 
 @attrs.frozen
@@ -53,10 +62,9 @@ class CppnController:
     def decode(self, network: Network, design: Design) -> Design:
         """Return *design* with the phase offsets that *network* draws on its body."""
         body = design.roles[MORPHOLOGY]
-        contracts = body == CONTRACTILE
-        points = np.full((np.count_nonzero(contracts), 4), float(CONTRACTILE))
-        points[:, :3] = voxel_points(body.shape, self.normalized_coordinates)[contracts]
+        contractile = np.flatnonzero(body == CONTRACTILE)
+        points = _points(body.shape, self.normalized_coordinates).take(contractile, axis=0)
         offsets = np.zeros(body.shape)
-        offsets[contracts] = np.clip(network(points)[:, 0], -_LARGEST_OFFSET, _LARGEST_OFFSET)
+        offsets.put(contractile, network(points)[:, 0].clip(-_LARGEST_OFFSET, _LARGEST_OFFSET))
         offsets.setflags(write=False)
         return design.with_role(CONTROLLER, offsets)

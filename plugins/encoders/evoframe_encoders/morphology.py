@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 import attrs
@@ -24,6 +25,19 @@ def _possible_canvas(_instance: Any, attribute: attrs.Attribute[Canvas], canvas:
         raise ValueError(f"{attribute.name} must be three whole numbers of at least 1, not {canvas}")
     if math.prod(canvas) > _MOST_VOXELS:
         raise ValueError(f"{attribute.name} {canvas} has more than {_MOST_VOXELS} voxels")
+
+
+def _drawn(enclosure: bool) -> tuple[slice, slice, slice]:
+    """Return which part of a canvas the network decides."""
+    return (slice(1, -1),) * 3 if enclosure else (slice(None),) * 3
+
+
+@lru_cache(maxsize=8)
+def _points(canvas: Canvas, normalized: bool, enclosure: bool) -> NDArray[np.float64]:
+    """Return the coordinates of the voxels that the network decides, ``float64[n, 3]``, read-only."""
+    points = np.array(voxel_points(canvas, normalized)[_drawn(enclosure)].reshape(-1, 3))
+    points.setflags(write=False)
+    return points
 
 
 @attrs.frozen
@@ -74,17 +88,17 @@ class CppnMorphology:
     def decode(self, network: Network, design: Design) -> Design:
         """Return *design* with the morphology that *network* draws."""
         body = np.full(self.canvas, PASSIVE, dtype=np.uint8)
-        drawn = (slice(1, -1),) * 3 if self.enclosure else (slice(None),) * 3
-        points = voxel_points(self.canvas, self.normalized_coordinates)[drawn]
-        body[drawn] = self._materials(network(points.reshape(-1, 3))).reshape(points.shape[:3])
+        drawn = body[_drawn(self.enclosure)]
+        points = _points(self.canvas, self.normalized_coordinates, self.enclosure)
+        drawn[:] = self._materials(network(points)).reshape(drawn.shape)
         if self.connected:
             body = _largest_part(body)
         body.setflags(write=False)
         return design.with_role(MORPHOLOGY, body)
 
-    def _materials(self, outputs: NDArray[np.float64]) -> NDArray[np.uint8]:
+    def _materials(self, outputs: NDArray[np.float64]) -> NDArray[np.int64]:
         present, contractile = (np.abs(outputs) >= self.threshold).T
-        return np.where(present, np.where(contractile, CONTRACTILE, PASSIVE), EMPTY).astype(np.uint8)
+        return np.where(present, np.where(contractile, CONTRACTILE, PASSIVE), EMPTY)
 
 
 def _largest_part(body: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -14,11 +14,10 @@ import numpy as np
 from neat.genes import DefaultConnectionGene, DefaultNodeGene
 from neat.innovation import InnovationTracker
 
-from evoframe_evolvers.activations import ACTIVATIONS
 from evoframe_evolvers.checked import entry, number, rows, whole
-from evoframe_evolvers.network import CppnNetwork, Node, build_network
 from evoframe_evolvers.options import GeneOptions, GenomeOptions
 from evoframe_evolvers.randomness import PrivateStream
+from evoframe_libcppn import ACTIVATIONS, CppnNetwork
 
 __all__ = ["NO_SELECTION", "Counter", "GenePool", "Sections", "neat_sections"]
 
@@ -92,9 +91,8 @@ class GenePool:
 
     def express(self, genome: Any) -> CppnNetwork:
         """Return the network that *genome* encodes."""
-        nodes = {key: Node(gene.activation, gene.bias, gene.response) for key, gene in genome.nodes.items()}
-        links = ((*gene.key, gene.weight) for gene in genome.connections.values() if gene.enabled)
-        return build_network(self.inputs, self.outputs, nodes, links)
+        links = [(*gene.key, gene.weight) for gene in genome.connections.values() if gene.enabled]
+        return CppnNetwork(self.inputs, self.outputs, genome.nodes, links)
 
     def dump(self, genome: Any) -> dict[str, Any]:
         """Return *genome* as JSON values; the order of genes matters, for neat-python walks through it."""

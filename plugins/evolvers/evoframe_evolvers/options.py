@@ -10,7 +10,7 @@ import attrs
 from attrs.validators import and_, ge, instance_of, le
 
 from evoframe import suggestion
-from evoframe_evolvers.activations import ACTIVATIONS
+from evoframe_libcppn import ACTIVATIONS
 
 __all__ = [
     "BiasOptions",
@@ -114,7 +114,7 @@ class GenomeOptions:
         weight: How weights begin and mutate (authors' configuration).
     """
 
-    activations: tuple[str, ...] = attrs.field(default=tuple(ACTIVATIONS), validator=_known_activations)
+    activations: tuple[str, ...] = attrs.field(default=ACTIVATIONS, validator=_known_activations)
     activation_mutate_rate: float = probability(0.4)
     connection_add: float = probability(0.3)
     connection_delete: float = probability(0.2)

@@ -1,5 +1,4 @@
 import numpy as np
-import pytest
 
 from evoframe_encoders.canvas import voxel_points
 
@@ -17,10 +16,3 @@ def test_normalized_axes_run_from_minus_1_to_1() -> None:
     assert points[:, 0, 0, 0].tolist() == [-1.0, -0.5, 0.0, 0.5, 1.0]
     assert points[0, :, 0, 1].tolist() == [-1.0, 1.0]
     assert points[0, 0, :, 2].tolist() == [0.0]
-
-
-def test_points_are_computed_once_and_cannot_be_changed() -> None:
-    points = voxel_points((4, 3, 2), normalized=False)
-    assert voxel_points((4, 3, 2), normalized=False) is points
-    with pytest.raises(ValueError, match="read-only"):
-        points[0, 0, 0, 0] = 1.0

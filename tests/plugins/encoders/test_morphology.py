@@ -147,6 +147,20 @@ def test_only_the_interior_is_asked_in_raw_coordinates() -> None:
     assert (points.min(axis=0).tolist(), points.max(axis=0).tolist()) == ([1, 1, 1], [18, 6, 6])
 
 
+def test_the_points_are_made_once_and_cannot_be_changed() -> None:
+    asked = []
+
+    def network(points: Any) -> Any:
+        asked.append(points)
+        return np.zeros((len(points), 2))
+
+    for _ in range(2):
+        body_of(CppnMorphology((4, 5, 6)), network)
+    assert asked[0] is asked[1]
+    assert asked[0].flags.c_contiguous
+    assert not asked[0].flags.writeable
+
+
 def test_other_roles_of_a_design_are_kept() -> None:
     design = CppnMorphology().decode(constant(1, 1), Design({"colour": np.arange(3)}))
     assert sorted(design.roles) == ["colour", "morphology"]

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Runs the solver's tests with the address and undefined-behaviour sanitizers, and a program in C with the leak
-# sanitizer too (Python itself leaks). Everything it builds is in a directory that it removes.
+# Runs the tests of the C libraries with the address and undefined-behaviour sanitizers, and a program in C for each
+# with the leak sanitizer too (Python itself leaks). Everything it builds is in a directory that it removes.
 #
-#   PYTHON=/path/to/python libvox/sanitize.sh [pytest options]
+#   PYTHON=/path/to/python tests/sanitize.sh [pytest options]
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=${PYTHON:-python3}
 compiler=${CC:-cc}
+libraries=(libcppn libvox)
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 
@@ -19,17 +20,19 @@ if ! echo 'int main(void) { return 0; }' | "$compiler" -fsanitize=address,undefi
 fi
 
 flags=(-std=c11 -g -O1 -Wall -Wextra -Wconversion -Wshadow -Werror -fsanitize=address,undefined -fno-sanitize-recover=all)
-"$compiler" "${flags[@]}" -I "$root/libvox/include" "$root/tests/libvox/embed.c" "$root"/libvox/*.c -o "$place/embed" -lm
-"$place/embed"
-
-EVOFRAME_SANITIZE=1 "$python" - "$root" "$place" <<'END'
+for library in "${libraries[@]}"; do
+    sources=("$root/tests/$library/embed.c" "$root/$library"/*.c)
+    "$compiler" "${flags[@]}" -I "$root/$library/include" "${sources[@]}" -o "$place/embed" -lm
+    "$place/embed"
+    EVOFRAME_SANITIZE=1 "$python" - "$root/$library" "$place" <<'END'
 import runpy
 import sys
 
-root, place = sys.argv[1:]
-runpy.run_path(f"{root}/libvox/build_ffi.py")["ffibuilder"].compile(tmpdir=place)
+library, place = sys.argv[1:]
+runpy.run_path(f"{library}/build_ffi.py")["ffibuilder"].compile(tmpdir=place)
 END
-cp "$root"/libvox/evoframe_libvox/*.py "$place/evoframe_libvox/"
+    cp "$root/$library/evoframe_$library"/*.py "$place/evoframe_$library/"
+done
 
 # The interpreter was built without the sanitizer, so its runtime has to be there first.
 export LD_PRELOAD=$("$compiler" -print-file-name=libasan.so)
@@ -37,7 +40,9 @@ export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 export PYTHONMALLOC=malloc # so that the sanitizer sees NumPy's and cffi's buffers
 export PYTHONPATH=$place PYTHONDONTWRITEBYTECODE=1
 cd "$root"
-found=$("$python" -c 'import evoframe_libvox; print(evoframe_libvox.__file__)')
-[[ $found == "$place"/* ]] || { echo "expected the sanitized build in $place, found $found" >&2; exit 1; }
+for library in "${libraries[@]}"; do
+    found=$("$python" -c "import evoframe_$library as built; print(built.__file__)")
+    [[ $found == "$place"/* ]] || { echo "expected the sanitized build in $place, found $found" >&2; exit 1; }
+done
 # Only what Python prints is captured: a sanitizer's report goes straight to the terminal.
-"$python" -m pytest --capture=sys -p no:cacheprovider tests/libvox "$@"
+"$python" -m pytest --capture=sys -p no:cacheprovider "${libraries[@]/#/tests/}" "$@"
