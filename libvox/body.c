@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "internal.h"
+#include "lanes.h"
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
@@ -159,7 +160,7 @@ static void lay_out_voxels(struct voxels *v, struct arena *arena, int64_t n)
     v->momentum = take_vecs(arena, n);
     v->spin = take_vecs(arena, n);
     v->start = take_vecs(arena, n);
-    double **const constants[] = {&v->phase, &v->amplitude, &v->mobility, &v->drag_rate, &v->weight,
+    double **const constants[] = {&v->phase, &v->phase_sine, &v->phase_cosine, &v->amplitude, &v->mobility, &v->drag_rate, &v->weight,
                                   &v->turnability, &v->spin_kept, &v->mobile};
     for (size_t i = 0; i < sizeof constants / sizeof *constants; i++) *constants[i] = take_numbers(arena, n);
     v->substance = take(arena, n, sizeof *v->substance);
@@ -189,6 +190,7 @@ static void lay_out(struct body *body, struct arena *arena)
     body->slots = take(arena, body->census.n_voxels, sizeof *body->slots);
     body->cells = take(arena, body->census.n_voxels, sizeof *body->cells);
     body->partly = take(arena, body->census.n_voxels, sizeof *body->partly);
+    body->tile_level = take(arena, body->n_tiles, sizeof *body->tile_level);
     body->occupied = take(arena, n, sizeof *body->occupied);
     body->bonded = take(arena, n, sizeof *body->bonded);
 }
@@ -230,6 +232,7 @@ static void place_voxel(struct body *body, const struct cursor *cursor, int32_t 
     v->spin_kept[slot] = 1.0 - substance->slow_spin_rate * body->census.dt;
     v->mobile[slot] = fixed == 0 ? 1.0 : 0.0;
     body->occupied[slot] = 1;
+    body->tile_level[slot / TILE] = 0;
     if (fixed != 0 && fixed != VOX_FIX_ALL) body->partly[body->n_partly++] = (int32_t)slot;
 }
 
@@ -250,6 +253,7 @@ static void place_starts(struct body *body)
 static void place_voxels(struct body *body, const uint8_t *material)
 {
     int64_t n = 0;
+    for (int64_t tile = 0; tile < body->n_tiles; tile++) body->tile_level[tile] = NEVER;
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
@@ -267,7 +271,7 @@ static void place_bond(struct body *body, int64_t lower, enum axis axis)
     bonds->there[lower] = 1.0;
     body->bonded[lower] |= (uint8_t)(2u << 2 * axis);
     body->bonded[upper] |= (uint8_t)(1u << 2 * axis);
-    if (bonds->tile_level[lower / TILE] > 0) bonds->tile_level[lower / TILE] = 0;
+    bonds->tile_level[lower / TILE] = 0;
     if (body->coupling) return;
     double numbers[MOST_COEFFICIENTS];
     memcpy(numbers, coupling_of(body, lower, upper), (size_t)N_COEFFICIENTS * sizeof *numbers);
@@ -370,7 +374,10 @@ void body_rest(struct body *body, const double *phase_cycles)
     clear(v->spin, n);
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
-        if (v->amplitude[slot] != 0.0) v->phase[slot] = (double)(float)phase_cycles[body->cells[i]];
+        if (v->amplitude[slot] == 0.0) continue;
+        v->phase[slot] = (double)(float)phase_cycles[body->cells[i]];
+        v->phase_sine[slot] = sine(TWO_PI * v->phase[slot]);
+        v->phase_cosine[slot] = cosine(TWO_PI * v->phase[slot]);
     }
     for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
     body->time = body->top_speed = 0.0;

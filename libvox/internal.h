@@ -205,6 +205,7 @@ struct voxels {
     struct vecs spin;         /* kg m2/s, angular momentum in the world frame */
     struct vecs start;        /* m, initial position */
     double *phase;            /* cycles */
+    double *phase_sine, *phase_cosine; /* of that angle */
     double *amplitude;        /* strain, of the actuation */
     double *mobility;         /* 1/kg, the inverse of the mass */
     double *drag_rate;        /* 1/s, slow damping of the momentum */
@@ -311,6 +312,8 @@ struct body {
     struct voxels voxels;
     struct bonds bonds[3]; /* along each axis */
     const struct coupling *coupling; /* of all bonds, or NULL if they differ */
+    int32_t *tile_level; /* the least level of its voxels, for each tile */
+    int32_t level;      /* what has a higher one is not computed in this step */
     int64_t n_partly;   /* voxels that are held in some degrees of freedom, but not in all */
     int32_t *partly;    /* their slots, ascending */
     struct contacts contacts;
@@ -400,7 +403,15 @@ struct kernel {
     bool (*voxels_advance)(struct body *body);
 };
 
-extern const struct kernel scalar_kernel, generic_kernel, avx2_kernel, avx512_kernel;
+extern const struct kernel generic_kernel, avx2_kernel, avx512_kernel;
+
+/* The kernel of a number, or NULL if there is none that this processor can use. */
+const struct kernel *kernel_of(int32_t number);
+
+/* Where the compiler can be told the instructions of a part of a file. */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define VOX_X86_KERNELS
+#endif
 
 /* contact_list.c */
 

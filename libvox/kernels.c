@@ -6,4 +6,30 @@ static bool always(void)
     return true;
 }
 
-const struct kernel scalar_kernel = {"scalar", always, scalar_bonds_apply, scalar_voxels_advance};
+static const struct kernel scalar_kernel = {"scalar", always, scalar_bonds_apply, scalar_voxels_advance};
+
+static const struct kernel *const kernels[] = {
+    &scalar_kernel,
+    &generic_kernel,
+#ifdef VOX_X86_KERNELS
+    &avx2_kernel,
+    &avx512_kernel,
+#endif
+};
+
+#define N_KERNELS ((int32_t)(sizeof kernels / sizeof *kernels))
+
+const struct kernel *kernel_of(int32_t number)
+{
+    if (number < 0 || number > N_KERNELS) return NULL;
+    if (number > 0) return kernels[number - 1]->usable() ? kernels[number - 1] : NULL;
+    int32_t last = N_KERNELS - 1;
+    while (!kernels[last]->usable()) last--;
+    return kernels[last];
+}
+
+const char *vox_kernel_name(int32_t number)
+{
+    if (number < 1 || number > N_KERNELS) return NULL;
+    return kernels[number - 1]->usable() ? kernels[number - 1]->name : "";
+}

@@ -67,6 +67,7 @@ static enum vox_status check_settings(const struct vox_settings *s)
     if (status == VOX_OK) status = check_surroundings(s);
     if (status == VOX_OK) status = check_contacts(s);
     if (status != VOX_OK) return status;
+    if (!kernel_of(s->kernel)) return VOX_BAD_KERNEL;
     if (!(s->largest_strain > 0.0 && s->largest_strain <= FARTHEST)) return VOX_BAD_LARGEST_STRAIN;
     if (!(s->largest_distance > 0.0 && s->largest_distance <= FARTHEST)) return VOX_BAD_LARGEST_DISTANCE;
     return VOX_OK;
@@ -236,7 +237,7 @@ enum vox_status vox_model_create(const struct vox_settings *settings, const stru
     vox_model *made = calloc(1, sizeof *made);
     if (!made) return VOX_NO_MEMORY;
     made->settings = *settings;
-    made->kernel = &scalar_kernel;
+    made->kernel = kernel_of(settings->kernel);
     status = fill(made, palette, n_codes, fixed, culprit);
     if (status != VOX_OK) {
         vox_model_destroy(made);

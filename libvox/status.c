@@ -27,6 +27,7 @@ const char *vox_status_message(enum vox_status status)
     case VOX_BAD_COLLISION_ENVELOPE: return "collision_envelope must be between 1 and 2";
     case VOX_BAD_COLLISION_HORIZON: return "collision_horizon must be between 1 and 4";
     case VOX_BAD_COLLISION_LIST_FACTOR: return "collision_list_factor must be between 1 and 2";
+    case VOX_BAD_KERNEL: return "kernel must be one that this processor can use";
     case VOX_BAD_LARGEST_STRAIN: return "largest_strain must be above 0 and at most 1e9";
     case VOX_BAD_LARGEST_DISTANCE: return "largest_distance must be above 0 and at most 1e9";
     case VOX_BAD_PALETTE: return "the palette must give at least one material, with codes from 1 to 255";

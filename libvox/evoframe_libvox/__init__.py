@@ -5,7 +5,9 @@ are in cycles. The solver itself is the C library in ``libvox/``: it checks the 
 releases the GIL while it works, and keeps no state, so threads may share a model.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+import itertools
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final, Literal, get_args
 
 import attrs
@@ -14,10 +16,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from evoframe_libvox._vox import ffi, lib
 
-__all__ = ["FIX_ALL", "KERNEL", "Material", "Model", "Result", "Settings", "Track"]
+__all__ = ["FIX_ALL", "KERNELS", "Material", "Model", "Result", "Settings", "Track"]
 
-KERNEL: Final = "scalar"
-"""Name of the implementation that computes, to be recorded with its results."""
+
+def _kernels() -> Iterator[tuple[str, int]]:
+    for number in itertools.count(1):
+        name = lib.vox_kernel_name(number)
+        if name == ffi.NULL:
+            return
+        if found := ffi.string(name).decode():
+            yield found, number
+
+
+_NUMBERS: Final = dict(_kernels())
+
+KERNELS: Final = tuple(_NUMBERS)
+"""Names of the implementations that this processor can use, the fastest last. ``scalar`` is the reference, one
+bond after the other; the others are one program for several instruction sets, and give the same bits."""
 
 FIX_ALL: Final = 63
 """All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its
@@ -149,6 +164,13 @@ class Model:
         palette: The material of each code that a cell may have, from 1 to 255. Code 0 is an empty cell.
         settings: How bodies are simulated.
         fixed: ``uint8[X, Y, Z]``, the degrees of freedom that a voxel has not, as bits (see ``FIX_ALL``).
+        kernel: Which of ``KERNELS`` computes. By default what the environment variable ``EVOFRAME_KERNEL``
+            names, or else the fastest.
+        whole_body: Whether all of a body is computed to the end, even what cannot reach a sample any more.
+            That changes no bit of the results.
+
+    Attributes:
+        kernel: The name of the kernel that computes, to be recorded with its results.
 
     Raises:
         ValueError: A setting or a material is out of its range, or an array has the wrong shape.
@@ -161,15 +183,20 @@ class Model:
         palette: Mapping[int, Material],
         settings: Settings,
         fixed: ArrayLike,
+        *,
+        kernel: str | None = None,
+        whole_body: bool = False,
     ) -> None:
         self.canvas: Final = canvas
         self.palette: Final = dict(palette)
         self.settings: Final = settings
+        self.kernel: Final = _kernel(kernel)
+        computing = {"kernel": _NUMBERS[self.kernel], "whole_body": whole_body}
         held = _cells("fixed", fixed, np.uint8, canvas)
         pointer = ffi.new("vox_model **")
         culprit = ffi.new("int64_t *")
         status = lib.vox_model_create(
-            ffi.new("struct vox_settings *", _settings_fields(canvas, settings)),
+            ffi.new("struct vox_settings *", _settings_fields(canvas, settings) | computing),
             _palette_entries(self.palette),
             lib.VOX_MAX_CODES,
             ffi.from_buffer("uint8_t[]", held),
@@ -304,6 +331,14 @@ class Model:
         if hasattr(self.settings, field):
             return _error(status, f", got {getattr(self.settings, field)}")
         return _error(status, "")
+
+
+def _kernel(name: str | None) -> str:
+    """Return the name of the kernel to use."""
+    asked, where = (name, "kernel") if name else (os.environ.get("EVOFRAME_KERNEL"), "EVOFRAME_KERNEL")
+    if asked and asked not in KERNELS:
+        raise ValueError(f"{where} must be one of {', '.join(KERNELS)} on this processor, got {asked}")
+    return asked or KERNELS[-1]
 
 
 def _samples(sample_steps: ArrayLike, n_bodies: int) -> NDArray[np.int64]:

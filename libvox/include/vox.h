@@ -48,6 +48,7 @@ enum vox_status {
     VOX_BAD_COLLISION_ENVELOPE,
     VOX_BAD_COLLISION_HORIZON,
     VOX_BAD_COLLISION_LIST_FACTOR,
+    VOX_BAD_KERNEL,
     VOX_BAD_LARGEST_STRAIN,
     VOX_BAD_LARGEST_DISTANCE,
     /* the palette [material code] */
@@ -116,6 +117,9 @@ struct vox_settings {
                                       when the fastest voxel may have moved by (horizon - 1) / 2 lattice edges */
     double collision_list_factor;  /* the list leaves out voxels within floor(factor * horizon) bonds of each other,
                                       and the original engine's what is beyond factor * horizon edges; 1 .. 2 */
+    /* what computes; all kernels but the scalar one give the same bits, that one the same but for roundings */
+    int32_t kernel;                /* 0: the fastest that this processor can use; else a number of vox_kernel_name */
+    int32_t whole_body;            /* 0: leaves out what cannot reach a sample any more, which changes no bit */
     /* what counts as diverged */
     double largest_strain;         /* of a bond, either way; 0 < . <= 1e9 */
     double largest_distance;       /* of a voxel from its start, in longest edges of the canvas; 0 < . <= 1e9 */
@@ -180,6 +184,9 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples, const int64_t *sample_steps,
                              const struct vox_tracks *tracks, int64_t *diverged_step, int64_t *culprit);
+
+/* Name of a kernel, from number 1 up, the fastest last: empty if this processor cannot use it, NULL after the last. */
+const char *vox_kernel_name(int32_t number);
 
 /* A sentence without a full stop; never NULL. */
 const char *vox_status_message(enum vox_status status);

@@ -1,0 +1,16 @@
+/* The fast kernel with AVX2 instructions, where compiler and processor know them. */
+#include "internal.h"
+
+#ifdef VOX_X86_KERNELS
+#pragma GCC target("avx2,prefer-vector-width=256")
+#define VECTOR(name) avx2_##name
+
+#include "vector_kernel.h"
+
+static bool avx2_usable(void)
+{
+    return __builtin_cpu_supports("avx2");
+}
+
+const struct kernel avx2_kernel = VECTOR_KERNEL("avx2");
+#endif

@@ -1,0 +1,17 @@
+/* The fast kernel with AVX-512 instructions, where compiler and processor know them. */
+#include "internal.h"
+
+#ifdef VOX_X86_KERNELS
+#pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
+#define VECTOR(name) avx512_##name
+
+#include "vector_kernel.h"
+
+static bool avx512_usable(void)
+{
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512bw");
+}
+
+const struct kernel avx512_kernel = VECTOR_KERNEL("avx512");
+#endif

@@ -1,0 +1,11 @@
+/* The fast kernel with the instructions that every processor of the target has. */
+#define VECTOR(name) generic_##name
+
+#include "vector_kernel.h"
+
+static bool generic_usable(void)
+{
+    return true;
+}
+
+const struct kernel generic_kernel = VECTOR_KERNEL("generic");

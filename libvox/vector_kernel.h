@@ -1,0 +1,532 @@
+/* The fast kernel: the bond law (sections 5 and 6) and the motion (sections 4, 7 and 8) for a tile of slots at a time,
+ * in loops that the compiler turns into vector instructions. A file for each instruction set includes this one, after a
+ * #pragma that allows those instructions, with VECTOR(name) giving its own names; contraction being off, all give the
+ * same bits.
+ *
+ * A missing bond is computed like any other and then left out: no lane depends on another. */
+#include <float.h>
+
+#include "internal.h"
+#include "lanes.h"
+
+/* Limits of the frames, as in bond.c. */
+#define SMALL_COSINE 0.9999625024343469
+#define LARGE_COSINE 0.9999546280051071
+#define SLOPE_OF_SMALL_TURN 0.01732
+#define COSINE_OF_SMALL_ROTATION 0.9988
+
+/* Aligned for any vector. */
+#ifdef __GNUC__
+#define IN_LINES __attribute__((aligned(64)))
+#else
+#define IN_LINES
+#endif
+
+/* Numbers of a tile. */
+typedef double lanes[TILE];
+
+/* ---- vectors that are seen along an axis ------------------------------------------------------------------ */
+
+IN_LOOP struct vec along(enum axis axis, struct vec v)
+{
+    if (axis == AXIS_X) return v;
+    return axis == AXIS_Y ? (struct vec){v.y, -v.x, v.z} : (struct vec){v.z, v.y, -v.x};
+}
+
+IN_LOOP struct vec across(enum axis axis, struct vec v)
+{
+    if (axis == AXIS_X) return v;
+    return axis == AXIS_Y ? (struct vec){-v.y, v.x, v.z} : (struct vec){-v.z, v.y, v.x};
+}
+
+/* A rotation as a matrix: cheaper than its quaternion where it turns several vectors. */
+struct matrix {
+    struct vec x, y, z; /* rows */
+};
+
+IN_LOOP struct matrix matrix_of(struct quat q)
+{
+    const double ww = q.w * q.w, xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
+    const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
+    return (struct matrix){
+        {(ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)},
+        {2.0 * (xy + wz), (ww + yy) - (xx + zz), 2.0 * (yz - wx)},
+        {2.0 * (xz - wy), 2.0 * (yz + wx), (ww + zz) - (xx + yy)},
+    };
+}
+
+IN_LOOP struct vec turn(const struct matrix *m, struct vec v)
+{
+    return (struct vec){vec_dot(m->x, v), vec_dot(m->y, v), vec_dot(m->z, v)};
+}
+
+IN_LOOP struct vec turn_back(const struct matrix *m, struct vec v)
+{
+    return (struct vec){
+        m->x.x * v.x + m->y.x * v.y + m->z.x * v.z,
+        m->x.y * v.x + m->y.y * v.y + m->z.y * v.z,
+        m->x.z * v.x + m->y.z * v.y + m->z.z * v.z,
+    };
+}
+
+/* ---- how bonds are deformed ------------------------------------------------------------------------------- */
+
+/* What the bonds of a tile look like, each in its own frame. */
+struct sight {
+    lanes stretch[3];  /* m; before the frame is known, the upper end seen from the lower */
+    lanes relative[4]; /* quaternion, of the upper end against the frame */
+    lanes onto[3];     /* w, y, z of the rotation that takes the bond onto x; only where a bond is in the large frame */
+    lanes rest;        /* m */
+    lanes small;       /* 1 or 0, the frame of this step */
+} IN_LINES;
+
+/* Looks at the bonds from their lower ends and chooses their frames. How many are in the large one? */
+IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axis axis, int64_t base,
+                     struct sight *restrict sight)
+{
+    const int64_t step = bonds->step;
+    const double *restrict px = v->position.x + base, *restrict py = v->position.y + base;
+    const double *restrict pz = v->position.z + base, *restrict size = v->size + base;
+    const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
+    const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
+    const double *restrict there = bonds->there + base, *restrict was_small = bonds->small + base;
+    int64_t large = 0;
+    for (int64_t i = 0; i < TILE; i++) {
+        const struct quat lower = {qw[i], qx[i], qy[i], qz[i]};
+        const struct quat upper = {qw[i + step], qx[i + step], qy[i + step], qz[i + step]};
+        const struct vec apart = {px[i + step] - px[i], py[i + step] - py[i], pz[i + step] - pz[i]};
+        const struct matrix frame = matrix_of(lower);
+        const struct vec u = along(axis, turn_back(&frame, apart));
+        const struct quat turned = quat_mul(quat_conj(lower), upper);
+        const struct vec turned_axis = along(axis, (struct vec){turned.x, turned.y, turned.z});
+        const double rest = 0.5 * (size[i] + size[i + step]), aside = fabs(u.y) + fabs(u.z);
+        /* turns and extensions against their limits without dividing; backwards, a turn is negative */
+        const bool leaves = (turned.w <= LARGE_COSINE) | ((aside > 0.055 * u.x) & (u.x >= 0.0)) | (u.x > 1.43 * rest);
+        const bool returns = (turned.w > SMALL_COSINE) & ((aside < 0.05 * u.x) | (u.x < 0.0)) & (u.x < 1.30 * rest);
+        const bool was = was_small[i] != 0.0, is = (was & !leaves) | (!was & returns);
+        sight->stretch[0][i] = u.x;
+        sight->stretch[1][i] = u.y;
+        sight->stretch[2][i] = u.z;
+        sight->relative[0][i] = turned.w;
+        sight->relative[1][i] = turned_axis.x;
+        sight->relative[2][i] = turned_axis.y;
+        sight->relative[3][i] = turned_axis.z;
+        sight->rest[i] = rest;
+        sight->small[i] = choose(is, 1.0, 0.0);
+        large += (there[i] != 0.0) & !is;
+    }
+    return large;
+}
+
+/* The rotation that takes a direction onto +x, without its x, which is 0; as in bond.c. */
+IN_LOOP struct quat onto_x(struct vec u, double length)
+{
+    const double slope = SLOPE_OF_SMALL_TURN * fabs(u.x), half = 0.5 / u.x;
+    const bool slight = (fabs(u.y) < slope) & (fabs(u.z) < slope);
+    const double cosine = u.x / length, half_cosine = sqrt(0.5 + 0.5 * cosine);
+    const double k = choose(slight, half, 0.5 / (length * half_cosine));
+    const double y = u.z * k, z = -u.y * k;
+    return (struct quat){choose(slight, 1.0 - 0.5 * (y * y + z * z), half_cosine), 0.0, y, z};
+}
+
+/* Straightens the bonds that are in the large frame. How many are turned so far that a chord does not do for the arc? */
+IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict sight)
+{
+    int64_t far = 0;
+    for (int64_t i = 0; i < TILE; i++) {
+        const struct vec u = {sight->stretch[0][i], sight->stretch[1][i], sight->stretch[2][i]};
+        const struct quat r = {sight->relative[0][i], sight->relative[1][i], sight->relative[2][i],
+                               sight->relative[3][i]};
+        const bool small = sight->small[i] != 0.0;
+        const double length = sqrt(vec_dot(u, u));
+        const struct quat large = onto_x(u, length);
+        const double w = choose(small, 1.0, large.w), y = choose(small, 0.0, large.y), z = choose(small, 0.0, large.z);
+        const double turned = w * r.w - y * r.y - z * r.z;
+        sight->onto[0][i] = w;
+        sight->onto[1][i] = y;
+        sight->onto[2][i] = z;
+        sight->relative[0][i] = turned;
+        sight->relative[1][i] = w * r.x + y * r.z - z * r.y;
+        sight->relative[2][i] = w * r.y + y * r.w + z * r.x;
+        sight->relative[3][i] = w * r.z - y * r.x + z * r.w;
+        sight->stretch[0][i] = choose(small, u.x, length);
+        sight->stretch[1][i] = choose(small, u.y, 0.0);
+        sight->stretch[2][i] = choose(small, u.z, 0.0);
+        far += (there[i] != 0.0) & ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
+    }
+    return far;
+}
+
+/* Length of the rotation vector of a unit quaternion over that of its vector part: within 5.6 degrees the chord counts
+ * as the arc, as in the engine. */
+IN_LOOP double arc_ratio(double cosine, bool far)
+{
+    const double chord = choose(cosine >= 1.0, 0.0, 2.0 * inverse_root_of_half(1.0 - cosine));
+    if (!far) return chord;
+    const double w = choose(cosine > 1.0, 1.0, cosine);
+    return choose(w > COSINE_OF_SMALL_ROTATION, chord, 2.0 * arccosine(w) / sqrt(1.0 - w * w));
+}
+
+/* ---- what bonds do ---------------------------------------------------------------------------------------- */
+
+/* What the bonds of a tile do to their ends, in the world. */
+struct loads {
+    lanes force_lower[3], moment_lower[3], force_upper[3], moment_upper[3];
+} IN_LINES;
+
+IN_LOOP void put(lanes to[3], int64_t i, bool there, struct vec v)
+{
+    to[0][i] = choose(there, v.x, 0.0);
+    to[1][i] = choose(there, v.y, 0.0);
+    to[2][i] = choose(there, v.z, 0.0);
+}
+
+/* Stiffnesses and dampers of the bond in a slot. */
+IN_LOOP struct coupling coupling_in(const struct bonds *bonds, int64_t i)
+{
+    double *const *c = bonds->coefficients;
+    return (struct coupling){
+        c[0][i], c[1][i], c[2][i], c[3][i], c[4][i],
+        {c[5][i], c[6][i], c[7][i], c[8][i], c[9][i], c[10][i]},
+        {c[11][i], c[12][i], c[13][i], c[14][i], c[15][i], c[16][i]},
+        0.0, 0.0, 0.0,
+    };
+}
+
+/* Stretch, and turns of both ends, or how fast they change. */
+struct change {
+    struct vec p, a, b;
+};
+
+/* Force on an end, in the bond's frame: a spring's, or with its own numbers a damper's. */
+IN_LOOP struct vec force_of(double stretch, double shear, double bend_shear, const struct change *c)
+{
+    return (struct vec){
+        stretch * c->p.x,
+        shear * c->p.y - bend_shear * (c->a.z + c->b.z),
+        shear * c->p.z + bend_shear * (c->a.y + c->b.y),
+    };
+}
+
+/* Moment on the end that turned by `own`, likewise; it counts twice. */
+IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const struct change *c, struct vec own)
+{
+    return (struct vec){
+        twist,
+        bend_shear * c->p.z + bend * ((c->a.y + c->b.y) + own.y),
+        bend * ((c->a.z + c->b.z) + own.z) - bend_shear * c->p.y,
+    };
+}
+
+/* The orientation of a frame that a bond straightens: lower * (w, 0, -y, -z), the latter seen along an axis. */
+IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, double y, double z)
+{
+    const struct vec v = along(axis, (struct vec){lower.x, lower.y, lower.z});
+    const struct vec turned = {
+        w * v.x + (v.z * y - v.y * z),
+        w * v.y + (v.x * z - lower.w * y),
+        w * v.z - (v.x * y + lower.w * z),
+    };
+    const struct vec back = across(axis, turned);
+    return (struct quat){lower.w * w + (v.y * y + v.z * z), back.x, back.y, back.z};
+}
+
+/* Computes the forces and moments of a tile's bonds, and keeps how they are deformed. How many are strained too far?
+ * The constants say whether all bonds have one coupling, whether some are in the large frame, and turned far. */
+IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const struct coupling *coupling,
+                     enum axis axis, int64_t base, double per_second, double most, bool large, bool far,
+                     const struct sight *restrict sight, struct loads *restrict loads)
+{
+    const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
+    const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
+    const double *restrict is_there = bonds->there + base;
+    double *restrict small = bonds->small + base;
+    double *restrict last_x = bonds->stretch.x + base, *restrict last_y = bonds->stretch.y + base;
+    double *restrict last_z = bonds->stretch.z + base;
+    double *restrict lower_y = bonds->lower_y + base, *restrict lower_z = bonds->lower_z + base;
+    double *restrict upper_x = bonds->upper.x + base, *restrict upper_y = bonds->upper.y + base;
+    double *restrict upper_z = bonds->upper.z + base;
+    int64_t overstrained = 0;
+#pragma GCC ivdep
+    for (int64_t i = 0; i < TILE; i++) {
+        const struct coupling c = coupling ? *coupling : coupling_in(bonds, base + i);
+        const struct vec p = {sight->stretch[0][i] - sight->rest[i], sight->stretch[1][i], sight->stretch[2][i]};
+        const struct quat r = {sight->relative[0][i], sight->relative[1][i], sight->relative[2][i],
+                               sight->relative[3][i]};
+        const struct quat lower = {qw[i], qx[i], qy[i], qz[i]};
+        struct vec a = {0.0, 0.0, 0.0};
+        struct quat frame = lower;
+        if (large) {
+            const double w = sight->onto[0][i], y = sight->onto[1][i], z = sight->onto[2][i];
+            const double k = arc_ratio(w, far);
+            a = (struct vec){0.0, k * y, k * z};
+            frame = turned_back(lower, axis, w, y, z);
+        }
+        const double k = arc_ratio(r.w, far);
+        const struct vec b = {k * r.x, k * r.y, k * r.z};
+
+        /* a change of frame leaves the history, from which the next rates come */
+        const bool same = sight->small[i] == small[i];
+        const double rate = choose(same, per_second, 0.0);
+        const struct change now = {p, a, b};
+        const struct change speed = {
+            {rate * (p.x - last_x[i]), rate * (p.y - last_y[i]), rate * (p.z - last_z[i])},
+            {0.0, rate * (a.y - lower_y[i]), rate * (a.z - lower_z[i])},
+            {rate * (b.x - upper_x[i]), rate * (b.y - upper_y[i]), rate * (b.z - upper_z[i])},
+        };
+        small[i] = sight->small[i];
+        last_x[i] = choose(same, p.x, last_x[i]);
+        last_y[i] = choose(same, p.y, last_y[i]);
+        last_z[i] = choose(same, p.z, last_z[i]);
+        lower_y[i] = choose(same, a.y, lower_y[i]);
+        lower_z[i] = choose(same, a.z, lower_z[i]);
+        upper_x[i] = choose(same, b.x, upper_x[i]);
+        upper_y[i] = choose(same, b.y, upper_y[i]);
+        upper_z[i] = choose(same, b.z, upper_z[i]);
+
+        const struct damper *lower_end = &c.lower, *upper_end = coupling ? &c.lower : &c.upper;
+        const struct vec spring = force_of(c.stretch, c.shear, c.bend_shear, &now);
+        const struct vec brake = force_of(lower_end->stretch, lower_end->shear, lower_end->bend_shear, &speed);
+        const double twist = c.twist * b.x, twisting = speed.b.x;
+        const struct vec moment_lower =
+            vec_add(moment_of(-twist, c.bend_shear, c.bend, &now, a),
+                    moment_of(-lower_end->twist * twisting, lower_end->moment_shear, lower_end->bend, &speed, speed.a));
+        const struct vec moment_upper =
+            vec_add(moment_of(twist, c.bend_shear, c.bend, &now, b),
+                    moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend, &speed, speed.b));
+        const struct matrix m = matrix_of(frame);
+        const bool there = is_there[i] != 0.0;
+        put(loads->force_lower, i, there, turn(&m, across(axis, vec_add(spring, brake))));
+        put(loads->moment_lower, i, there, turn(&m, across(axis, moment_lower)));
+        put(loads->moment_upper, i, there, turn(&m, across(axis, moment_upper)));
+        if (!coupling) {
+            const struct vec own = force_of(upper_end->stretch, upper_end->shear, upper_end->bend_shear, &speed);
+            put(loads->force_upper, i, there, turn(&m, across(axis, vec_add(spring, own))));
+        }
+        overstrained += there & !(fabs(p.x) <= most);
+    }
+    return overstrained;
+}
+
+IN_LOOP void add_lanes(double *restrict to, const double *restrict from)
+{
+    for (int64_t i = 0; i < TILE; i++) to[i] += from[i];
+}
+
+IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
+{
+    for (int64_t i = 0; i < TILE; i++) to[i] -= from[i];
+}
+
+/* The lower ends of the whole tile come before the upper ones, whatever the length of a vector. */
+IN_LOOP void unload(const struct voxels *v, int64_t lower, int64_t upper, const struct loads *loads, bool opposite)
+{
+    double *const force[] = {v->force.x, v->force.y, v->force.z};
+    double *const torque[] = {v->torque.x, v->torque.y, v->torque.z};
+    for (int k = 0; k < 3; k++) {
+        add_lanes(force[k] + lower, loads->force_lower[k]);
+        subtract_lanes(torque[k] + lower, loads->moment_lower[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        subtract_lanes(force[k] + upper, opposite ? loads->force_lower[k] : loads->force_upper[k]);
+        subtract_lanes(torque[k] + upper, loads->moment_upper[k]);
+    }
+}
+
+IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis, int64_t base,
+                           double per_second, double most)
+{
+    const struct voxels *v = &body->voxels;
+    const struct bonds *b = &body->bonds[axis];
+    struct sight sight;
+    struct loads loads;
+    int64_t overstrained;
+    if (look(v, b, axis, base, &sight) == 0)
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, false, false, &sight, &loads);
+    else if (straighten(b->there + base, &sight) == 0)
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, &sight, &loads);
+    else
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, &sight, &loads);
+    unload(v, base, base + b->step, &loads, coupling != NULL);
+    return overstrained == 0;
+}
+
+/* Axis after axis in one tile, whose voxels stay in the cache; whether there is one coupling is a constant. */
+IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupling, double per_second)
+{
+    const struct vox_settings *s = &body->model->settings;
+    const double most = s->largest_strain * s->voxel_size;
+    bool fine = true;
+    for (int64_t tile = 0; tile < body->n_tiles; tile++) {
+        const int64_t base = tile * TILE;
+        if (body->bonds[AXIS_X].tile_level[tile] <= body->level)
+            fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most);
+        if (body->bonds[AXIS_Y].tile_level[tile] <= body->level)
+            fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most);
+        if (body->bonds[AXIS_Z].tile_level[tile] <= body->level)
+            fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most);
+    }
+    return fine;
+}
+
+static bool VECTOR(bonds_apply)(struct body *body, double per_second)
+{
+    if (!body->coupling) return bonds_of_body(body, NULL, per_second);
+    const struct coupling coupling = *body->coupling;
+    return bonds_of_body(body, &coupling, per_second);
+}
+
+/* ---- motion ----------------------------------------------------------------------------------------------- */
+
+/* Force on a voxel with slow damping and weight. */
+IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentum, double weight)
+{
+    return (struct vec){force.x - drag_rate * momentum.x, force.y - drag_rate * momentum.y,
+                        (force.z - drag_rate * momentum.z) + weight};
+}
+
+/* Moves a tile's voxels that are free to move; raises `fastest`, squares of speeds. How many have diverged? The constant
+ * says whether slow damping and weight are part of the forces already. */
+IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, double too_far, bool complete,
+                          double *restrict fastest)
+{
+    double *restrict px = v->position.x + base, *restrict py = v->position.y + base, *restrict pz = v->position.z + base;
+    double *restrict mx = v->momentum.x + base, *restrict my = v->momentum.y + base, *restrict mz = v->momentum.z + base;
+    double *restrict fx = v->force.x + base, *restrict fy = v->force.y + base, *restrict fz = v->force.z + base;
+    const double *restrict sx = v->start.x + base, *restrict sy = v->start.y + base, *restrict sz = v->start.z + base;
+    const double *restrict mobility = v->mobility + base, *restrict mobile = v->mobile + base;
+    const double *restrict drag_rate = v->drag_rate + base, *restrict weight = v->weight + base;
+    int64_t lost = 0;
+#pragma GCC ivdep
+    for (int64_t i = 0; i < TILE; i++) {
+        const bool moves = mobile[i] != 0.0;
+        const struct vec last = {mx[i], my[i], mz[i]}, bare = {fx[i], fy[i], fz[i]};
+        const struct vec force = complete ? bare : loaded(bare, drag_rate[i], last, weight[i]);
+        const struct vec momentum = {last.x + dt * force.x, last.y + dt * force.y, last.z + dt * force.z};
+        const struct vec velocity = vec_scale(mobility[i], momentum);
+        const struct vec position = {px[i] + dt * velocity.x, py[i] + dt * velocity.y, pz[i] + dt * velocity.z};
+        const struct vec way = {position.x - sx[i], position.y - sy[i], position.z - sz[i]};
+        const double speed2 = choose(moves, vec_dot(velocity, velocity), 0.0);
+        lost += moves & !(vec_dot(way, way) <= too_far * too_far);
+        fastest[i] = choose(speed2 > fastest[i], speed2, fastest[i]);
+        mx[i] = choose(moves, momentum.x, mx[i]);
+        my[i] = choose(moves, momentum.y, my[i]);
+        mz[i] = choose(moves, momentum.z, mz[i]);
+        px[i] = choose(moves, position.x, px[i]);
+        py[i] = choose(moves, position.y, py[i]);
+        pz[i] = choose(moves, position.z, pz[i]);
+        fx[i] = fy[i] = fz[i] = 0.0;
+    }
+    return lost;
+}
+
+/* Adds slow damping, weight and the floor to the forces on a tile's voxels that are free to move. */
+static void stand_tile(struct body *body, int64_t base)
+{
+    for (int64_t slot = base; slot < base + TILE; slot++) {
+        if (body->voxels.mobile[slot] == 0.0) continue;
+        voxel_load(body, slot);
+        floor_apply(body, slot);
+    }
+}
+
+/* Turns a tile's voxels that are free to turn. How many have diverged? */
+static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
+{
+    double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
+    double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
+    double *restrict sx = v->spin.x + base, *restrict sy = v->spin.y + base, *restrict sz = v->spin.z + base;
+    double *restrict tx = v->torque.x + base, *restrict ty = v->torque.y + base, *restrict tz = v->torque.z + base;
+    const double *restrict kept = v->spin_kept + base, *restrict turnability = v->turnability + base;
+    const double *restrict mobile = v->mobile + base;
+    int64_t lost = 0;
+#pragma GCC ivdep
+    for (int64_t i = 0; i < TILE; i++) {
+        const bool moves = mobile[i] != 0.0;
+        const struct vec spin = {kept[i] * (sx[i] + dt * tx[i]), kept[i] * (sy[i] + dt * ty[i]),
+                                 kept[i] * (sz[i] + dt * tz[i])};
+        const struct vec rate = vec_scale(turnability[i], spin);
+        const struct quat q = {qw[i], qx[i], qy[i], qz[i]};
+        const struct quat dq = quat_mul((struct quat){0.0, rate.x, rate.y, rate.z}, q);
+        const double half = 0.5 * dt;
+        const struct quat r = {q.w + half * dq.w, q.x + half * dq.x, q.y + half * dq.y, q.z + half * dq.z};
+        const double norm = 1.0 / sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
+        const bool straight = r.w * norm >= 1.0;
+        lost += moves & !(vec_dot(spin, spin) * turnability[i] <= DBL_MAX);
+        sx[i] = choose(moves, spin.x, sx[i]);
+        sy[i] = choose(moves, spin.y, sy[i]);
+        sz[i] = choose(moves, spin.z, sz[i]);
+        qw[i] = choose(moves, choose(straight, 1.0, r.w * norm), q.w);
+        qx[i] = choose(moves, choose(straight, 0.0, r.x * norm), q.x);
+        qy[i] = choose(moves, choose(straight, 0.0, r.y * norm), q.y);
+        qz[i] = choose(moves, choose(straight, 0.0, r.z * norm), q.z);
+        tx[i] = ty[i] = tz[i] = 0.0;
+    }
+    return lost;
+}
+
+/* Lets the sizes of a tile's voxels follow the actuation, as in motion.c. */
+static void size_tile(const struct voxels *v, int64_t base, const struct actuation *actuation)
+{
+    const double edge = actuation->edge, rest = actuation->rest, gain = actuation->gain;
+    const double swing = sine(TWO_PI * actuation->cycles), sway = cosine(TWO_PI * actuation->cycles);
+    const double *restrict amplitude = v->amplitude + base;
+    const double *restrict phase_sine = v->phase_sine + base, *restrict phase_cosine = v->phase_cosine + base;
+    double *restrict size = v->size + base;
+    if (gain == 0.0) {
+        for (int64_t i = 0; i < TILE; i++) size[i] = edge * rest;
+        return;
+    }
+    for (int64_t i = 0; i < TILE; i++) {
+        const double next = edge * (rest + gain * amplitude[i] * (swing * phase_cosine[i] + sway * phase_sine[i]));
+        const bool shrinks = (next < SMALLEST_SCALE * edge) & (next < size[i]);
+        const bool grows = (next > LARGEST_SCALE * edge) & (next > size[i]);
+        size[i] = choose(shrinks | grows, size[i], next);
+    }
+}
+
+/* Voxels that are held in part, one by one. */
+static bool advance_partly_held(struct body *body)
+{
+    bool fine = true;
+    for (int64_t i = 0; i < body->n_partly; i++) {
+        const int64_t slot = body->partly[i];
+        voxel_load(body, slot);
+        if (body->model->settings.floor) floor_apply(body, slot);
+        const double speed = voxel_move(body, slot, &fine);
+        if (speed > body->top_speed) body->top_speed = speed;
+    }
+    return fine;
+}
+
+IN_LOOP int64_t advance_tile(struct body *body, int64_t base, double *fastest)
+{
+    const struct voxels *v = &body->voxels;
+    const double dt = body->census.dt, too_far = body->model->too_far;
+    if (!body->model->settings.floor) return move_tile(v, base, dt, too_far, false, fastest) + turn_tile(v, base, dt);
+    stand_tile(body, base);
+    return move_tile(v, base, dt, too_far, true, fastest) + turn_tile(v, base, dt);
+}
+
+static bool VECTOR(voxels_advance)(struct body *body)
+{
+    const struct actuation actuation = actuation_at(body->model, body->time);
+    lanes fastest = {0.0};
+    int64_t lost = 0;
+    body->top_speed = 0.0;
+    const bool fine = advance_partly_held(body);
+    for (int64_t tile = 0; tile < body->n_tiles; tile++) {
+        if (body->tile_level[tile] > body->level) continue;
+        lost += advance_tile(body, tile * TILE, fastest);
+        size_tile(&body->voxels, tile * TILE, &actuation);
+    }
+    double most = 0.0;
+    for (int64_t i = 0; i < TILE; i++) most = fastest[i] > most ? fastest[i] : most;
+    if (sqrt(most) > body->top_speed) body->top_speed = sqrt(most);
+    body->time += body->census.dt;
+    return fine && lost == 0;
+}
+
+static bool VECTOR(usable)(void);
+
+#define VECTOR_KERNEL(name) {name, VECTOR(usable), VECTOR(bonds_apply), VECTOR(voxels_advance)}
