@@ -13,15 +13,17 @@ enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
     grid->most_cubes = CUBES_PER_VOXEL * n_skin + 1;
     grid->begin = malloc((size_t)(grid->most_cubes + 1) * sizeof *grid->begin);
     grid->voxels = malloc((size_t)(n_skin + 1) * sizeof *grid->voxels);
+    grid->packed = malloc((size_t)(n_skin + 1) * sizeof *grid->packed);
     grid->cube_of = malloc((size_t)(n_skin + 1) * sizeof *grid->cube_of);
     grid->found = malloc((size_t)(n_skin + 1) * sizeof *grid->found);
-    return grid->begin && grid->voxels && grid->cube_of && grid->found ? VOX_OK : VOX_NO_MEMORY;
+    return grid->begin && grid->voxels && grid->packed && grid->cube_of && grid->found ? VOX_OK : VOX_NO_MEMORY;
 }
 
 void grid_destroy(struct grid *grid)
 {
     free(grid->begin);
     free(grid->voxels);
+    free(grid->packed);
     free(grid->cube_of);
     free(grid->found);
     *grid = (struct grid){0};
@@ -98,18 +100,22 @@ void grid_fill(struct grid *grid, const struct body *body, double reach)
         grid->begin[grid->cube_of[i]]++;
     }
     for (int64_t cube = 1; cube <= n_cubes; cube++) grid->begin[cube] += grid->begin[cube - 1];
-    for (int64_t i = grid->n_skin - 1; i >= 0; i--) grid->voxels[--grid->begin[grid->cube_of[i]]] = body->contacts.skin[i];
+    for (int64_t i = grid->n_skin - 1; i >= 0; i--) {
+        const int32_t slot = body->contacts.skin[i], at = --grid->begin[grid->cube_of[i]];
+        grid->voxels[at] = slot;
+        grid->packed[at] = vec_at(body->voxels.position, slot);
+    }
 }
 
-/* Adds the voxels of a cube that come after one and are in reach of it, in their order. */
-static int64_t find_in_cube(const struct grid *grid, const struct body *body, int64_t cube, int32_t first, int64_t n)
+/* Adds the voxels of a row of cubes that come after one and are in reach of it, in their order. */
+static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first, struct vec position,
+                             int64_t n)
 {
-    const struct vec position = vec_at(body->voxels.position, first);
-    for (int32_t k = grid->begin[cube]; k < grid->begin[cube + 1]; k++) {
+    const double reach2 = grid->reach * grid->reach;
+    for (int32_t k = grid->begin[cube]; k < grid->begin[last + 1]; k++) {
         const int32_t other = grid->voxels[k];
-        if (other <= first) continue;
-        const struct vec apart = vec_sub(vec_at(body->voxels.position, other), position);
-        if (!(vec_dot(apart, apart) < grid->reach * grid->reach)) continue;
+        const struct vec apart = vec_sub(grid->packed[k], position);
+        if (!((other > first) & (vec_dot(apart, apart) < reach2))) continue;
         int64_t at = n++;
         for (; at > 0 && grid->found[at - 1] > other; at--) grid->found[at] = grid->found[at - 1];
         grid->found[at] = other;
@@ -121,6 +127,7 @@ int64_t grid_find(const struct grid *grid, const struct body *body, int32_t firs
 {
     double at[3];
     int64_t from[3], to[3], n = 0;
+    const struct vec position = vec_at(body->voxels.position, first);
     coordinates(body, first, at);
     for (int axis = 0; axis < 3; axis++) {
         const int64_t place = place_in(grid, axis, at[axis]);
@@ -129,7 +136,7 @@ int64_t grid_find(const struct grid *grid, const struct body *body, int32_t firs
     }
     for (int64_t z = from[2]; z <= to[2]; z++)
         for (int64_t y = from[1]; y <= to[1]; y++)
-            for (int64_t x = from[0]; x <= to[0]; x++)
-                n = find_in_cube(grid, body, cube_at(grid, (int64_t[]){x, y, z}), first, n);
+            n = find_in_cubes(grid, cube_at(grid, (int64_t[]){from[0], y, z}),
+                              cube_at(grid, (int64_t[]){to[0], y, z}), first, position, n);
     return n;
 }

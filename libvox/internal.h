@@ -125,6 +125,30 @@ struct coupling {
 
 struct kernel;
 
+/* A lattice point near a voxel, and the shortest ways to it along bonds: each by a last bond from a point before it. */
+struct place {
+    int32_t by[3];   /* from the voxel */
+    int32_t n_ways;
+    int32_t from[3]; /* index of the point before */
+    int32_t side[3]; /* on which that has the bond: 0 .. 5 for -x, +x, -y, +y, -z, +z */
+};
+
+/* A cell near another. */
+struct near_cell {
+    int32_t by[3];
+    int32_t place; /* index, or -1 if more bonds lead there */
+};
+
+/* The lattice around a voxel. */
+struct vicinity {
+    int64_t hops;
+    int64_t n_places;
+    struct place *places;    /* within so many bonds, closer ones first: voxels that are joined so do not collide */
+    int32_t *index;          /* of each point of the cube around them */
+    int64_t n_cells;
+    struct near_cell *cells; /* of voxels that may touch, each pair once */
+};
+
 struct vox_model {
     struct vox_settings settings;
     const struct kernel *kernel;
@@ -133,6 +157,7 @@ struct vox_model {
     double largest_size;         /* m, of any voxel at any time */
     double too_far;              /* m, a voxel further from its start has diverged */
     double floor_rise;           /* of the floor along x, m/m */
+    struct vicinity vicinity;    /* voxels in it do not collide if the bonds are there */
     int16_t of_code[VOX_MAX_CODES]; /* index into substances, or -1 */
     int32_t n_substances;
     struct substance *substances;
@@ -242,7 +267,7 @@ struct pair {
 };
 
 struct pairs {
-    int64_t capacity, n;
+    int64_t n;
     struct pair *list;
 };
 
@@ -256,6 +281,7 @@ struct grid {
     int64_t length[3];     /* cubes */
     int32_t *begin;        /* [most_cubes + 1] into `voxels` */
     int32_t *voxels;       /* [n_skin] slots, cube after cube, ascending in each */
+    struct vec *packed;    /* [n_skin] m, their positions */
     int32_t *cube_of;      /* [n_skin] */
     int32_t *found;        /* [n_skin] slots */
 };
@@ -268,18 +294,27 @@ struct search {
     int32_t *queue;        /* [slots] */
 };
 
+/* All pairs that may be listed while no voxel has strayed from its start. `words` hold a bit for each slot. */
+struct near_by {
+    struct pairs pairs;
+    uint64_t *joined;      /* [places][words] where one of the shortest ways to a place is bonds */
+    uint64_t *bonds;       /* [6][words] */
+    uint64_t *skin, *held; /* [words] voxels that may touch others; voxels that are held in all degrees of freedom */
+    int32_t *begin;        /* [slots + 1] */
+    struct search search;
+};
+
 /* The voxels that may touch others, and which pairs are looked at (section 10). */
 struct contacts {
     int64_t n_skin;
     int32_t *skin;         /* slots, ascending */
     int64_t most;          /* pairs that may be listed at a time */
-    struct pairs near_by;  /* all that may be listed while no voxel has strayed from its start */
+    struct near_by near_by;
     struct pairs first;    /* the list at rest */
     bool first_is_known;
     struct pairs now;      /* the list that is in use */
     double travelled;      /* lattice edges, of the fastest voxel since the list was made */
     struct grid grid;
-    struct search search;
 };
 
 /* Of a voxel with a bond on every side. */
@@ -304,6 +339,7 @@ struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
+    int32_t (*place)[3]; /* of each slot in the box */
     int64_t step[3];    /* slots from a cell to the next along each axis */
     int32_t *slots;     /* [n_voxels] of the voxels, ascending */
     int32_t *cells;     /* [n_voxels] of the canvas, likewise */
@@ -353,9 +389,6 @@ void body_destroy(struct body *body);
 
 /* Puts the body at rest at time 0. */
 void body_rest(struct body *body, const double *phase_cycles);
-
-/* Place of a slot along an axis of the box. */
-int64_t place_of(const struct body *body, int64_t slot, enum axis axis);
 
 /* Slot of the cell beside a slot (upwards or not), or -1 beyond the box. */
 int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards);
@@ -413,7 +446,31 @@ const struct kernel *kernel_of(int32_t number);
 #define VOX_X86_KERNELS
 #endif
 
+/* vicinity.c */
+
+/* The places within so many bonds, and the cells closer than so many edges. To be destroyed in any case. */
+enum vox_status vicinity_create(struct vicinity *vicinity, int64_t hops, double radius);
+void vicinity_destroy(struct vicinity *vicinity);
+
+/* Index of a place, or -1 if it is too far. */
+int64_t vicinity_index(const struct vicinity *vicinity, const int32_t by[3]);
+
+/* contact_near.c */
+
+/* Lists all pairs of the skin in near cells that may collide, sorted. */
+enum vox_status near_by_shape(const struct body *body, struct near_by *near_by);
+void near_by_destroy(struct near_by *near_by);
+
+/* Whether two voxels, first < second, may ever be listed: bonds do not join them closely, and one can move. */
+bool near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair);
+
 /* contact_list.c */
+
+/* Distance beyond which no pair is listed at any time, m. */
+double contacts_reach(const vox_model *model);
+
+/* A voxel that is further from its start, in lattice edges, has strayed. */
+#define STRAYED 0.35
 
 enum vox_status contacts_shape(struct body *body);
 void contacts_rest(struct body *body);

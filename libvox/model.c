@@ -219,6 +219,11 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     model->fixed = calloc((size_t)model->cells, 1);
     if (!model->substances || !model->couplings || !model->fixed) return VOX_NO_MEMORY;
     derive_constants(model, palette);
+    const struct vox_settings *s = &model->settings;
+    const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);
+    const enum vox_status built =
+        vicinity_create(&model->vicinity, hops, contacts_reach(model) / s->voxel_size + 2.0 * STRAYED);
+    if (built != VOX_OK) return built;
     return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }
 
@@ -253,5 +258,6 @@ void vox_model_destroy(vox_model *model)
     free(model->substances);
     free(model->couplings);
     free(model->fixed);
+    vicinity_destroy(&model->vicinity);
     free(model);
 }

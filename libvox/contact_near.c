@@ -1,0 +1,240 @@
+/* Self collision: which pairs can touch as long as no voxel is far from its start. What decides it, whether cells near
+ * each other have voxels and whether a few bonds join them, is computed for 64 slots at a time. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "internal.h"
+
+/* ---- bits, one for each slot ------------------------------------------------------------------------------ */
+
+static int64_t words_of(const struct body *body)
+{
+    return (body->n_slots + 63) / 64;
+}
+
+static bool is_set(const uint64_t *bits, int64_t slot)
+{
+    return bits[slot / 64] >> slot % 64 & 1;
+}
+
+static void set(uint64_t *bits, int64_t slot)
+{
+    bits[slot / 64] |= (uint64_t)1 << slot % 64;
+}
+
+/* 64 bits from a slot on, which may lie before or after all slots: those are not set. */
+static uint64_t bits_from(const uint64_t *bits, int64_t n_words, int64_t slot)
+{
+    const int64_t word = slot >= 0 ? slot / 64 : -((63 - slot) / 64), shift = slot - 64 * word;
+    const uint64_t low = word >= 0 && word < n_words ? bits[word] : 0;
+    if (shift == 0) return low;
+    const uint64_t high = word + 1 >= 0 && word + 1 < n_words ? bits[word + 1] : 0;
+    return low >> shift | high << (64 - shift);
+}
+
+static int lowest(uint64_t word)
+{
+#ifdef __GNUC__
+    return __builtin_ctzll(word);
+#else
+    int n = 0;
+    for (; !(word & 1); word >>= 1) n++;
+    return n;
+#endif
+}
+
+static int64_t slots_by(const struct body *body, const int32_t by[3])
+{
+    return by[0] + by[1] * body->step[1] + by[2] * body->step[2];
+}
+
+/* ---- voxels that are joined by a few bonds ---------------------------------------------------------------- */
+
+/* Marks from which voxels one of the shortest ways to a place consists of bonds. */
+static void join(const struct body *body, const struct near_by *near_by, int64_t place_index)
+{
+    const int64_t n_words = words_of(body);
+    const struct place *places = body->model->vicinity.places, *place = &places[place_index];
+    uint64_t *joined = near_by->joined + place_index * n_words;
+    for (int32_t way = 0; way < place->n_ways; way++) {
+        const uint64_t *before = near_by->joined + place->from[way] * n_words;
+        const uint64_t *bonds = near_by->bonds + place->side[way] * n_words;
+        const int64_t by = slots_by(body, places[place->from[way]].by);
+        for (int64_t word = 0; word < n_words; word++)
+            joined[word] |= before[word] & bits_from(bonds, n_words, 64 * word + by);
+    }
+}
+
+static void join_all(const struct body *body, const struct near_by *near_by)
+{
+    const size_t size = (size_t)words_of(body) * sizeof(uint64_t);
+    memset(near_by->joined, 0, (size_t)body->model->vicinity.n_places * size);
+    memset(near_by->bonds, 0, 6 * size);
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        set(near_by->joined, slot); /* the first place is where the voxel itself is */
+        for (int side = 0; side < 6; side++)
+            if (body->bonded[slot] >> side & 1) set(near_by->bonds + side * words_of(body), slot);
+    }
+    for (int64_t place = 1; place < body->model->vicinity.n_places; place++) join(body, near_by, place);
+}
+
+/* Marks the voxels to which a way of at most so many bonds leads: a breadth-first search. */
+static void search_from(const struct body *body, struct search *search, int32_t from, int64_t hops)
+{
+    int64_t begin = 0, n = 0;
+    search->from = from;
+    search->number++;
+    search->queue[n++] = from;
+    search->reached[from] = search->number;
+    for (int64_t hop = 0; hop < hops; hop++) {
+        const int64_t end = n;
+        for (; begin < end; begin++) {
+            const int32_t slot = search->queue[begin];
+            for (int side = 0; side < 6; side++) {
+                if (!(body->bonded[slot] >> side & 1)) continue;
+                const int64_t step = body->step[side / 2], next = side % 2 ? slot + step : slot - step;
+                if (search->reached[next] == search->number) continue;
+                search->reached[next] = search->number;
+                search->queue[n++] = (int32_t)next;
+            }
+        }
+    }
+}
+
+/* Whether two voxels are joined by few bonds, though not by one of the shortest ways on the lattice: any other is longer
+ * by two bonds at least. */
+static bool is_joined_around(const struct body *body, struct search *search, struct pair pair, const int32_t by[3])
+{
+    const int64_t hops = body->model->vicinity.hops;
+    if (labs(by[0]) + labs(by[1]) + labs(by[2]) + 2 > hops) return false;
+    if (search->from != pair.first) search_from(body, search, pair.first, hops);
+    return search->reached[pair.second] == search->number;
+}
+
+static void set_offset(const struct body *body, struct pair pair, int32_t by[3])
+{
+    const int32_t *from = body->place[pair.first], *to = body->place[pair.second];
+    for (int axis = 0; axis < 3; axis++) by[axis] = to[axis] - from[axis];
+}
+
+bool near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair)
+{
+    const uint8_t *fixed = body->voxels.fixed;
+    if (fixed[pair.first] == VOX_FIX_ALL && fixed[pair.second] == VOX_FIX_ALL) return false;
+    int32_t by[3];
+    set_offset(body, pair, by);
+    const int64_t place = vicinity_index(&body->model->vicinity, by);
+    if (place >= 0 && is_set(near_by->joined + place * words_of(body), pair.first)) return false;
+    return !is_joined_around(body, &near_by->search, pair, by);
+}
+
+/* ---- the list --------------------------------------------------------------------------------------------- */
+
+/* Which of 64 voxels of the skin have another in a near cell, to which they are not joined straight. A cell across the
+ * border of the box counts as the one where its slot is. */
+static uint64_t candidates(const struct body *body, const struct near_by *near_by, const struct near_cell *cell,
+                           int64_t word)
+{
+    const int64_t n_words = words_of(body), from = 64 * word + slots_by(body, cell->by);
+    uint64_t bits = near_by->skin[word] & bits_from(near_by->skin, n_words, from);
+    bits &= ~(near_by->held[word] & bits_from(near_by->held, n_words, from));
+    return cell->place < 0 ? bits : bits & ~near_by->joined[cell->place * n_words + word];
+}
+
+static bool is_at(const struct body *body, struct pair pair, const int32_t by[3])
+{
+    int32_t found[3];
+    set_offset(body, pair, found);
+    return found[0] == by[0] && found[1] == by[1] && found[2] == by[2];
+}
+
+/* Hands each pair of voxels in near cells to `begin`, which counts the pairs of each voxel, or, if there is one, to the
+ * list, where `begin` says at which place the next pair of a voxel goes. */
+static void visit(const struct body *body, const struct near_by *near_by, int32_t *begin, struct pair *list)
+{
+    const struct vicinity *vicinity = &body->model->vicinity;
+    for (int64_t i = 0; i < vicinity->n_cells; i++) {
+        const struct near_cell *cell = &vicinity->cells[i];
+        const int64_t by = slots_by(body, cell->by);
+        for (int64_t word = 0; word < words_of(body); word++) {
+            for (uint64_t left = candidates(body, near_by, cell, word); left; left &= left - 1) {
+                const int64_t first = 64 * word + lowest(left);
+                const struct pair pair = {(int32_t)first, (int32_t)(first + by)};
+                if (!is_at(body, pair, cell->by)) continue;
+                if (list) list[begin[first]] = pair;
+                begin[first]++;
+            }
+        }
+    }
+}
+
+/* Leaves only the pairs that are not joined by a longer way either. */
+static void drop_joined(const struct body *body, struct near_by *near_by)
+{
+    struct pairs *pairs = &near_by->pairs;
+    int64_t kept = 0;
+    for (int64_t i = 0; i < pairs->n; i++) {
+        int32_t by[3];
+        set_offset(body, pairs->list[i], by);
+        if (!is_joined_around(body, &near_by->search, pairs->list[i], by)) pairs->list[kept++] = pairs->list[i];
+    }
+    pairs->n = kept;
+}
+
+static void mark_skin(const struct body *body, const struct near_by *near_by)
+{
+    const size_t size = (size_t)words_of(body) * sizeof(uint64_t);
+    memset(near_by->skin, 0, size);
+    memset(near_by->held, 0, size);
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        if (body->bonded[slot] != ALL_SIDES) set(near_by->skin, slot);
+        if (body->voxels.fixed[slot] == VOX_FIX_ALL) set(near_by->held, slot);
+    }
+}
+
+static bool allocate(const struct body *body, struct near_by *near_by)
+{
+    const size_t n_slots = (size_t)body->n_slots, n_places = (size_t)body->model->vicinity.n_places;
+    const size_t size = (size_t)words_of(body) * sizeof(uint64_t);
+    near_by_destroy(near_by);
+    near_by->joined = malloc(n_places * size);
+    near_by->bonds = malloc(6 * size);
+    near_by->skin = malloc(size);
+    near_by->held = malloc(size);
+    near_by->begin = calloc(n_slots + 1, sizeof *near_by->begin);
+    near_by->search.reached = calloc(n_slots, sizeof *near_by->search.reached);
+    near_by->search.queue = malloc(n_slots * sizeof *near_by->search.queue);
+    near_by->search.from = -1;
+    return near_by->joined && near_by->bonds && near_by->skin && near_by->held && near_by->begin &&
+           near_by->search.reached && near_by->search.queue;
+}
+
+enum vox_status near_by_shape(const struct body *body, struct near_by *near_by)
+{
+    if (!allocate(body, near_by)) return VOX_NO_MEMORY;
+    join_all(body, near_by);
+    mark_skin(body, near_by);
+    visit(body, near_by, near_by->begin + 1, NULL);
+    for (int64_t slot = 0; slot < body->n_slots; slot++) near_by->begin[slot + 1] += near_by->begin[slot];
+    near_by->pairs.n = near_by->begin[body->n_slots];
+    near_by->pairs.list = malloc(((size_t)near_by->pairs.n + 1) * sizeof *near_by->pairs.list);
+    if (!near_by->pairs.list) return VOX_NO_MEMORY;
+    visit(body, near_by, near_by->begin, near_by->pairs.list);
+    drop_joined(body, near_by);
+    return VOX_OK;
+}
+
+void near_by_destroy(struct near_by *near_by)
+{
+    free(near_by->joined);
+    free(near_by->bonds);
+    free(near_by->skin);
+    free(near_by->held);
+    free(near_by->begin);
+    free(near_by->search.reached);
+    free(near_by->search.queue);
+    free(near_by->pairs.list);
+    *near_by = (struct near_by){0};
+}
