@@ -107,7 +107,7 @@ void grid_fill(struct grid *grid, const struct body *body, double reach)
     }
 }
 
-/* Adds the voxels of a row of cubes that come after one and are in reach of it, in their order. */
+/* Adds the voxels of a row of cubes that come after one and are in reach of it. */
 static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first, struct vec position,
                              int64_t n)
 {
@@ -115,12 +115,21 @@ static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last
     for (int32_t k = grid->begin[cube]; k < grid->begin[last + 1]; k++) {
         const int32_t other = grid->voxels[k];
         const struct vec apart = vec_sub(grid->packed[k], position);
-        if (!((other > first) & (vec_dot(apart, apart) < reach2))) continue;
-        int64_t at = n++;
-        for (; at > 0 && grid->found[at - 1] > other; at--) grid->found[at] = grid->found[at - 1];
-        grid->found[at] = other;
+        grid->found[n] = other; /* overwritten by the next unless it counts: nobody can foresee which do */
+        n += (other > first) & (vec_dot(apart, apart) < reach2);
     }
     return n;
+}
+
+/* By insertion: there are few. */
+static void sort(int32_t *slots, int64_t n)
+{
+    for (int64_t i = 1; i < n; i++) {
+        const int32_t slot = slots[i];
+        int64_t at = i;
+        for (; at > 0 && slots[at - 1] > slot; at--) slots[at] = slots[at - 1];
+        slots[at] = slot;
+    }
 }
 
 int64_t grid_find(const struct grid *grid, const struct body *body, int32_t first)
@@ -138,5 +147,6 @@ int64_t grid_find(const struct grid *grid, const struct body *body, int32_t firs
         for (int64_t y = from[1]; y <= to[1]; y++)
             n = find_in_cubes(grid, cube_at(grid, (int64_t[]){from[0], y, z}),
                               cube_at(grid, (int64_t[]){to[0], y, z}), first, position, n);
+    sort(grid->found, n);
     return n;
 }

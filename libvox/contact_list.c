@@ -95,21 +95,28 @@ void contacts_destroy(struct contacts *contacts)
 
 /* ---- making a list ---------------------------------------------------------------------------------------- */
 
-/* Whether the original engine lists two voxels: its reach is that of the first; voxels exactly at it are out. */
-static bool engine_lists(double first_size, double distance, const struct vox_settings *s)
+/* When a pair is close enough to be listed, m. */
+struct limits {
+    double reach;       /* of any list */
+    double engine;      /* of the original engine's, or infinite */
+    double horizon;     /* of the original engine's, in sizes of the first voxel; or infinite */
+};
+
+static struct limits limits_of(const vox_model *model)
 {
-    return distance < s->collision_horizon * first_size && distance < engine_reach(s);
+    const struct vox_settings *s = &model->settings;
+    if (s->complete_contacts) return (struct limits){contacts_reach(model), HUGE_VAL, HUGE_VAL};
+    return (struct limits){contacts_reach(model), engine_reach(s), s->collision_horizon};
 }
 
-/* Whether two voxels that may collide are close enough to be listed now. */
-static bool is_due(const struct body *body, struct pair pair)
+/* Voxels exactly at the original engine's reach are out. */
+IN_LOOP bool is_due(const struct voxels *v, struct pair pair, const struct limits *limits)
 {
-    const struct vox_settings *s = &body->model->settings;
-    const struct voxels *v = &body->voxels;
     const struct vec apart = vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
-    const double distance2 = vec_dot(apart, apart), farthest = contacts_reach(body->model);
-    if (distance2 >= farthest * farthest) return false;
-    return s->complete_contacts || engine_lists(v->size[pair.first], sqrt(distance2), s);
+    const double distance2 = vec_dot(apart, apart);
+    if (distance2 >= limits->reach * limits->reach) return false;
+    const double distance = sqrt(distance2);
+    return distance < limits->horizon * v->size[pair.first] && distance < limits->engine;
 }
 
 static bool has_strayed(const struct body *body)
@@ -135,21 +142,23 @@ static bool list_one(struct contacts *contacts, struct pair pair)
 static bool list_from_near_by(struct body *body)
 {
     const struct pairs *pairs = &body->contacts.near_by.pairs;
+    const struct limits limits = limits_of(body->model);
     for (int64_t i = 0; i < pairs->n; i++)
-        if (is_due(body, pairs->list[i]) && !list_one(&body->contacts, pairs->list[i])) return false;
+        if (is_due(&body->voxels, pairs->list[i], &limits) && !list_one(&body->contacts, pairs->list[i])) return false;
     return true;
 }
 
 static bool list_from_grid(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
-    grid_fill(&contacts->grid, body, contacts_reach(body->model));
+    const struct limits limits = limits_of(body->model);
+    grid_fill(&contacts->grid, body, limits.reach);
     for (int64_t i = 0; i < contacts->n_skin; i++) {
         const int32_t first = contacts->skin[i];
         const int64_t n = grid_find(&contacts->grid, body, first);
         for (int64_t k = 0; k < n; k++) {
             const struct pair pair = {first, contacts->grid.found[k]};
-            if (!is_due(body, pair) || !near_by_may_collide(body, &contacts->near_by, pair)) continue;
+            if (!is_due(&body->voxels, pair, &limits) || !near_by_may_collide(body, &contacts->near_by, pair)) continue;
             if (!list_one(contacts, pair)) return false;
         }
     }

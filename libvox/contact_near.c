@@ -169,9 +169,11 @@ static void visit(const struct body *body, const struct near_by *near_by, int32_
     }
 }
 
-/* Leaves only the pairs that are not joined by a longer way either. */
+/* Leaves only the pairs that are not joined by a longer way either. Such a way has 4 bonds at least: neighbours face to
+ * face are bonded, or held. */
 static void drop_joined(const struct body *body, struct near_by *near_by)
 {
+    if (body->model->vicinity.hops < 4) return;
     struct pairs *pairs = &near_by->pairs;
     int64_t kept = 0;
     for (int64_t i = 0; i < pairs->n; i++) {

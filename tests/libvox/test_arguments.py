@@ -237,7 +237,7 @@ def test_arrays_may_have_any_layout(small_model: ModelMaker) -> None:
 
 
 def test_public_names() -> None:
-    assert evoframe_libvox.KERNEL == "scalar"
+    assert evoframe_libvox.KERNELS[0] == "scalar"
     assert all(hasattr(evoframe_libvox, name) for name in evoframe_libvox.__all__)
 
 
