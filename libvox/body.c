@@ -173,7 +173,7 @@ static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, i
     bonds->upper = take_vecs(arena, n);
     for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i] = alike ? NULL : take_numbers(arena, n);
     bonds->lower = take(arena, n, sizeof *bonds->lower);
-    bonds->tile_level = take(arena, n_tiles, sizeof *bonds->tile_level);
+    bonds->tile_used = take(arena, n_tiles, sizeof *bonds->tile_used);
 }
 
 static void lay_out(struct body *body, struct arena *arena)
@@ -186,7 +186,7 @@ static void lay_out(struct body *body, struct arena *arena)
     body->cells = take(arena, body->census.n_voxels, sizeof *body->cells);
     body->partly = take(arena, body->census.n_voxels, sizeof *body->partly);
     body->place = take(arena, n, sizeof *body->place);
-    body->tile_level = take(arena, body->n_tiles, sizeof *body->tile_level);
+    body->tile_used = take(arena, body->n_tiles, sizeof *body->tile_used);
     body->occupied = take(arena, n, sizeof *body->occupied);
     body->bonded = take(arena, n, sizeof *body->bonded);
 }
@@ -228,7 +228,7 @@ static void place_voxel(struct body *body, const struct cursor *cursor, int32_t 
     v->spin_kept[slot] = 1.0 - substance->slow_spin_rate * body->census.dt;
     v->mobile[slot] = fixed == 0 ? 1.0 : 0.0;
     body->occupied[slot] = 1;
-    body->tile_level[slot / TILE] = 0;
+    body->tile_used[slot / TILE] = 1;
     if (fixed != 0 && fixed != VOX_FIX_ALL) body->partly[body->n_partly++] = (int32_t)slot;
 }
 
@@ -254,7 +254,6 @@ static void place_starts(struct body *body)
 static void place_voxels(struct body *body, const uint8_t *material)
 {
     int64_t n = 0;
-    for (int64_t tile = 0; tile < body->n_tiles; tile++) body->tile_level[tile] = NEVER;
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
@@ -272,7 +271,7 @@ static void place_bond(struct body *body, int64_t lower, enum axis axis)
     bonds->there[lower] = 1.0;
     body->bonded[lower] |= (uint8_t)(2u << 2 * axis);
     body->bonded[upper] |= (uint8_t)(1u << 2 * axis);
-    bonds->tile_level[lower / TILE] = 0;
+    bonds->tile_used[lower / TILE] = 1;
     if (body->coupling) return;
     double numbers[MOST_COEFFICIENTS];
     memcpy(numbers, coupling_of(body, lower, upper), (size_t)N_COEFFICIENTS * sizeof *numbers);
@@ -285,7 +284,6 @@ static void place_bonds(struct body *body, const uint8_t *material)
         struct bonds *bonds = &body->bonds[axis];
         bonds->n = 0;
         bonds->step = body->step[axis];
-        for (int64_t tile = 0; tile < body->n_tiles; tile++) bonds->tile_level[tile] = NEVER;
     }
     struct cursor cursor = {0};
     do {
@@ -381,7 +379,7 @@ void body_rest(struct body *body, const double *phase_cycles)
         v->phase_cosine[slot] = cosine(TWO_PI * v->phase[slot]);
     }
     for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
-    body->time = body->top_speed = 0.0;
+    body->time = body->top_speed = body->farthest = 0.0;
     if (body->model->settings.self_collision) contacts_rest(body);
 }
 

@@ -155,6 +155,7 @@ struct vox_model {
     int64_t cells;
     double rest_scale;           /* size / lattice edge without actuation: the edge was rounded to single precision */
     double largest_size;         /* m, of any voxel at any time */
+    double fastest;              /* 1/s2, the largest of its couplings */
     double too_far;              /* m, a voxel further from its start has diverged */
     double floor_rise;           /* of the floor along x, m/m */
     struct vicinity vicinity;    /* voxels in it do not collide if the bonds are there */
@@ -216,9 +217,6 @@ static inline void quat_put(struct quats a, int64_t i, struct quat q)
 /* Kernels work on so many slots at a time; a voxel's forces are summed in an order that depends on it. */
 #define TILE 32
 
-/* Level of a tile that never has anything to compute. */
-#define NEVER INT32_MAX
-
 /* What a voxel is and how it moves. */
 struct voxels {
     struct vecs position;     /* m */
@@ -258,7 +256,7 @@ struct bonds {
     double *lower_y, *lower_z; /* rad, turn of the lower end */
     struct vecs upper;  /* rad, turn of the upper end */
     double *coefficients[MOST_COEFFICIENTS]; /* of each bond's coupling, if not all are the same */
-    int32_t *tile_level; /* the least level of an end of its bonds, for each tile */
+    uint8_t *tile_used; /* 1 where a tile has a bond */
 };
 
 /* Two voxels that may touch, first < second: slots. */
@@ -348,8 +346,7 @@ struct body {
     struct voxels voxels;
     struct bonds bonds[3]; /* along each axis */
     const struct coupling *coupling; /* of all bonds, or NULL if they differ */
-    int32_t *tile_level; /* the least level of its voxels, for each tile */
-    int32_t level;      /* what has a higher one is not computed in this step */
+    uint8_t *tile_used; /* 1 where a tile has a voxel */
     int64_t n_partly;   /* voxels that are held in some degrees of freedom, but not in all */
     int32_t *partly;    /* their slots, ascending */
     struct contacts contacts;
@@ -358,6 +355,7 @@ struct body {
     size_t memory_size;
     double time;        /* s */
     double top_speed;   /* m/s, after the step before */
+    double farthest;    /* m, of any voxel from its start at any time */
 };
 
 static inline const struct substance *substance_of_voxel(const struct body *body, int64_t slot)
@@ -416,8 +414,9 @@ struct actuation actuation_at(const vox_model *model, double time);
 /* Adds slow damping and weight to the force on a voxel. */
 void voxel_load(struct body *body, int64_t slot);
 
-/* Moves a voxel by one time step under its forces; its speed, m/s. Makes `fine` false if it has diverged. */
-double voxel_move(struct body *body, int64_t slot, bool *fine);
+/* Moves a voxel by one time step under all forces; raises the body's top speed and its farthest way. False if it has
+ * diverged. */
+bool voxel_advance(struct body *body, int64_t slot);
 
 /* The reference kernel: bond.c and motion.c. */
 bool scalar_bonds_apply(struct body *body, double per_second);
@@ -508,6 +507,11 @@ void fluid_apply(struct body *body);
 /* Adds the push and the friction of the floor to the force on a voxel, which has all others already; a voxel that
  * sticks loses its lateral momentum. */
 void floor_apply(struct body *body, int64_t slot);
+
+/* harmless.c */
+
+/* Whether the next step, the list of its contacts being made, cannot lead a body to what counts as diverged. */
+bool next_step_is_harmless(const struct body *body);
 
 /* sample.c */
 

@@ -193,6 +193,8 @@ static void derive_constants(vox_model *model, const struct vox_material *palett
             model->couplings[i * model->n_substances + j] =
                 coupling_between(&model->substances[i], &model->substances[j], s);
     model->largest_size = largest_size(model);
+    for (int32_t i = 0; i < model->n_substances * model->n_substances; i++)
+        model->fastest = fmax(model->fastest, model->couplings[i].fastest);
 }
 
 static enum vox_status read_fixed(vox_model *model, const uint8_t *fixed, int64_t *culprit)

@@ -76,8 +76,13 @@ void voxel_load(struct body *body, int64_t slot)
     vec_put(v->force, slot, force);
 }
 
+static double larger(double a, double b)
+{
+    return b > a ? b : a;
+}
+
 /* Semi-implicit Euler: the new momentum moves the voxel. */
-double voxel_move(struct body *body, int64_t slot, bool *fine)
+static bool voxel_move(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
     const double dt = body->census.dt, too_far = body->model->too_far;
@@ -87,18 +92,17 @@ double voxel_move(struct body *body, int64_t slot, bool *fine)
     if (v->fixed[slot]) hold(v, slot);
     const struct vec way = vec_sub(vec_at(v->position, slot), vec_at(v->start, slot));
     const struct vec spin = vec_at(v->spin, slot), velocity = velocity_of(v, slot);
-    *fine &= vec_dot(way, way) <= too_far * too_far; /* false for a NaN */
-    *fine &= isfinite(vec_dot(spin, spin) * v->turnability[slot]);
-    return sqrt(vec_dot(velocity, velocity));
+    body->top_speed = larger(body->top_speed, sqrt(vec_dot(velocity, velocity)));
+    body->farthest = larger(body->farthest, sqrt(vec_dot(way, way)));
+    return vec_dot(way, way) <= too_far * too_far && isfinite(vec_dot(spin, spin) * v->turnability[slot]);
 }
 
 /* The floor comes last, since friction looks at all other forces. */
-static void voxel_advance(struct body *body, int64_t slot, bool *fine)
+bool voxel_advance(struct body *body, int64_t slot)
 {
     voxel_load(body, slot);
     if (body->model->settings.floor) floor_apply(body, slot);
-    const double speed = voxel_move(body, slot, fine);
-    if (speed > body->top_speed) body->top_speed = speed;
+    return voxel_move(body, slot);
 }
 
 bool scalar_voxels_advance(struct body *body)
@@ -109,7 +113,7 @@ bool scalar_voxels_advance(struct body *body)
     body->top_speed = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
-        if (v->fixed[slot] != VOX_FIX_ALL) voxel_advance(body, slot, &fine);
+        if (v->fixed[slot] != VOX_FIX_ALL) fine &= voxel_advance(body, slot);
         v->size[slot] = size_of(&actuation, v->amplitude[slot], v->phase[slot], v->size[slot]);
         vec_put(v->force, slot, (struct vec){0.0, 0.0, 0.0});
         vec_put(v->torque, slot, (struct vec){0.0, 0.0, 0.0});

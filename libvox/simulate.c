@@ -62,11 +62,12 @@ static enum vox_status check_body(const vox_model *model, const uint8_t *materia
 }
 
 /* False if the body diverged. All forces are complete before any voxel moves. */
-static bool advance(struct body *body, bool first_step)
+static bool advance(struct body *body, bool first_step, bool needed)
 {
     const vox_model *model = body->model;
     const bool collides = model->settings.self_collision;
     if (collides && !contacts_refresh(body, first_step)) return false;
+    if (!needed && next_step_is_harmless(body)) return true;
     if (!model->kernel->bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt)) return false;
     if (collides) contacts_apply(body);
     if (model->settings.fluid_drag > 0.0) fluid_apply(body);
@@ -74,18 +75,19 @@ static bool advance(struct body *body, bool first_step)
 }
 
 /* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step at which it
- * diverged. */
+ * diverged. The very last step need not be made if no sample comes after it and it cannot diverge. */
 static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps, const struct vox_tracks *tracks,
                    int64_t row)
 {
-    const int64_t end = row + n_samples;
+    const int64_t end = row + n_samples, last = body->census.steps - 1;
     for (int64_t step = 0;; step++) {
         if (row < end && *sample_steps == step) {
             sample_write(body, tracks, row++);
             sample_steps++;
         }
         if (step == body->census.steps) return 0;
-        if (advance(body, step == 0)) continue;
+        const bool needed = step < last || row < end || body->model->settings.whole_body;
+        if (advance(body, step == 0, needed)) continue;
         sample_write_nothing(body->model, tracks, row, end);
         return step + 1;
     }

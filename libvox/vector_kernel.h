@@ -80,9 +80,41 @@ struct sight {
     lanes small;       /* 1 or 0, the frame of this step */
 } IN_LINES;
 
+/* Orientations of the voxels in a tile as matrices, row after row: the lower ends' of its bonds along all axes. */
+struct frames {
+    lanes entries[9];
+} IN_LINES;
+
+IN_LOOP void find_frames(const struct voxels *v, int64_t base, struct frames *restrict frames)
+{
+    const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
+    const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
+    for (int64_t i = 0; i < TILE; i++) {
+        const struct matrix m = matrix_of((struct quat){qw[i], qx[i], qy[i], qz[i]});
+        frames->entries[0][i] = m.x.x;
+        frames->entries[1][i] = m.x.y;
+        frames->entries[2][i] = m.x.z;
+        frames->entries[3][i] = m.y.x;
+        frames->entries[4][i] = m.y.y;
+        frames->entries[5][i] = m.y.z;
+        frames->entries[6][i] = m.z.x;
+        frames->entries[7][i] = m.z.y;
+        frames->entries[8][i] = m.z.z;
+    }
+}
+
+IN_LOOP struct matrix frame_at(const struct frames *frames, int64_t i)
+{
+    return (struct matrix){
+        {frames->entries[0][i], frames->entries[1][i], frames->entries[2][i]},
+        {frames->entries[3][i], frames->entries[4][i], frames->entries[5][i]},
+        {frames->entries[6][i], frames->entries[7][i], frames->entries[8][i]},
+    };
+}
+
 /* Looks at the bonds from their lower ends and chooses their frames. How many are in the large one? */
 IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axis axis, int64_t base,
-                     struct sight *restrict sight)
+                     const struct frames *restrict frames, struct sight *restrict sight)
 {
     const int64_t step = bonds->step;
     const double *restrict px = v->position.x + base, *restrict py = v->position.y + base;
@@ -95,7 +127,7 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         const struct quat lower = {qw[i], qx[i], qy[i], qz[i]};
         const struct quat upper = {qw[i + step], qx[i + step], qy[i + step], qz[i + step]};
         const struct vec apart = {px[i + step] - px[i], py[i + step] - py[i], pz[i + step] - pz[i]};
-        const struct matrix frame = matrix_of(lower);
+        const struct matrix frame = frame_at(frames, i);
         const struct vec u = along(axis, turn_back(&frame, apart));
         const struct quat turned = quat_mul(quat_conj(lower), upper);
         const struct vec turned_axis = along(axis, (struct vec){turned.x, turned.y, turned.z});
@@ -235,7 +267,8 @@ IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, dou
  * The constants say whether all bonds have one coupling, whether some are in the large frame, and turned far. */
 IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const struct coupling *coupling,
                      enum axis axis, int64_t base, double per_second, double most, bool large, bool far,
-                     const struct sight *restrict sight, struct loads *restrict loads)
+                     const struct frames *restrict frames, const struct sight *restrict sight,
+                     struct loads *restrict loads)
 {
     const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
     const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
@@ -294,7 +327,7 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const st
         const struct vec moment_upper =
             vec_add(moment_of(twist, c.bend_shear, c.bend, &now, b),
                     moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend, &speed, speed.b));
-        const struct matrix m = matrix_of(frame);
+        const struct matrix m = large ? matrix_of(frame) : frame_at(frames, i);
         const bool there = is_there[i] != 0.0;
         put(loads->force_lower, i, there, turn(&m, across(axis, vec_add(spring, brake))));
         put(loads->moment_lower, i, there, turn(&m, across(axis, moment_lower)));
@@ -334,19 +367,20 @@ IN_LOOP void unload(const struct voxels *v, int64_t lower, int64_t upper, const 
 }
 
 IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis, int64_t base,
-                           double per_second, double most)
+                           double per_second, double most, const struct frames *frames)
 {
+    if (!body->bonds[axis].tile_used[base / TILE]) return true;
     const struct voxels *v = &body->voxels;
     const struct bonds *b = &body->bonds[axis];
     struct sight sight;
     struct loads loads;
     int64_t overstrained;
-    if (look(v, b, axis, base, &sight) == 0)
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, false, false, &sight, &loads);
+    if (look(v, b, axis, base, frames, &sight) == 0)
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, false, false, frames, &sight, &loads);
     else if (straighten(b->there + base, &sight) == 0)
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, &sight, &loads);
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, &loads);
     else
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, &sight, &loads);
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, &loads);
     unload(v, base, base + b->step, &loads, coupling != NULL);
     return overstrained == 0;
 }
@@ -356,15 +390,13 @@ IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupl
 {
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;
+    struct frames frames;
     bool fine = true;
-    for (int64_t tile = 0; tile < body->n_tiles; tile++) {
-        const int64_t base = tile * TILE;
-        if (body->bonds[AXIS_X].tile_level[tile] <= body->level)
-            fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most);
-        if (body->bonds[AXIS_Y].tile_level[tile] <= body->level)
-            fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most);
-        if (body->bonds[AXIS_Z].tile_level[tile] <= body->level)
-            fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most);
+    for (int64_t base = 0; base < body->n_slots; base += TILE) {
+        find_frames(&body->voxels, base, &frames);
+        fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most, &frames);
+        fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most, &frames);
+        fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most, &frames);
     }
     return fine;
 }
@@ -385,10 +417,15 @@ IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentu
                         (force.z - drag_rate * momentum.z) + weight};
 }
 
-/* Moves a tile's voxels that are free to move; raises `fastest`, squares of speeds. How many have diverged? The constant
- * says whether slow damping and weight are part of the forces already. */
+/* Squares of the largest speeds and ways from the start, in each lane. */
+struct extremes {
+    lanes speed2, way2;
+} IN_LINES;
+
+/* Moves a tile's voxels that are free to move. How many have diverged? The constant says whether slow damping and weight
+ * are part of the forces already. */
 IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, double too_far, bool complete,
-                          double *restrict fastest)
+                          struct extremes *restrict extremes)
 {
     double *restrict px = v->position.x + base, *restrict py = v->position.y + base, *restrict pz = v->position.z + base;
     double *restrict mx = v->momentum.x + base, *restrict my = v->momentum.y + base, *restrict mz = v->momentum.z + base;
@@ -407,8 +444,10 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
         const struct vec position = {px[i] + dt * velocity.x, py[i] + dt * velocity.y, pz[i] + dt * velocity.z};
         const struct vec way = {position.x - sx[i], position.y - sy[i], position.z - sz[i]};
         const double speed2 = choose(moves, vec_dot(velocity, velocity), 0.0);
-        lost += moves & !(vec_dot(way, way) <= too_far * too_far);
-        fastest[i] = choose(speed2 > fastest[i], speed2, fastest[i]);
+        const double way2 = choose(moves, vec_dot(way, way), 0.0);
+        lost += moves & !(way2 <= too_far * too_far);
+        extremes->speed2[i] = choose(speed2 > extremes->speed2[i], speed2, extremes->speed2[i]);
+        extremes->way2[i] = choose(way2 > extremes->way2[i], way2, extremes->way2[i]);
         mx[i] = choose(moves, momentum.x, mx[i]);
         my[i] = choose(moves, momentum.y, my[i]);
         mz[i] = choose(moves, momentum.z, mz[i]);
@@ -489,40 +528,41 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
 static bool advance_partly_held(struct body *body)
 {
     bool fine = true;
-    for (int64_t i = 0; i < body->n_partly; i++) {
-        const int64_t slot = body->partly[i];
-        voxel_load(body, slot);
-        if (body->model->settings.floor) floor_apply(body, slot);
-        const double speed = voxel_move(body, slot, &fine);
-        if (speed > body->top_speed) body->top_speed = speed;
-    }
+    for (int64_t i = 0; i < body->n_partly; i++) fine &= voxel_advance(body, body->partly[i]);
     return fine;
 }
 
-IN_LOOP int64_t advance_tile(struct body *body, int64_t base, double *fastest)
+IN_LOOP int64_t advance_tile(struct body *body, int64_t base, struct extremes *extremes)
 {
     const struct voxels *v = &body->voxels;
     const double dt = body->census.dt, too_far = body->model->too_far;
-    if (!body->model->settings.floor) return move_tile(v, base, dt, too_far, false, fastest) + turn_tile(v, base, dt);
+    if (!body->model->settings.floor) return move_tile(v, base, dt, too_far, false, extremes) + turn_tile(v, base, dt);
     stand_tile(body, base);
-    return move_tile(v, base, dt, too_far, true, fastest) + turn_tile(v, base, dt);
+    return move_tile(v, base, dt, too_far, true, extremes) + turn_tile(v, base, dt);
+}
+
+/* The root of the largest of some squares, if it is larger than a number. */
+static double raised(double number, const double *squares)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < TILE; i++) largest = choose(squares[i] > largest, squares[i], largest);
+    return sqrt(largest) > number ? sqrt(largest) : number;
 }
 
 static bool VECTOR(voxels_advance)(struct body *body)
 {
     const struct actuation actuation = actuation_at(body->model, body->time);
-    lanes fastest = {0.0};
+    struct extremes extremes = {{0.0}, {0.0}};
     int64_t lost = 0;
     body->top_speed = 0.0;
     const bool fine = advance_partly_held(body);
     for (int64_t tile = 0; tile < body->n_tiles; tile++) {
-        if (body->tile_level[tile] > body->level) continue;
-        lost += advance_tile(body, tile * TILE, fastest);
+        if (!body->tile_used[tile]) continue;
+        lost += advance_tile(body, tile * TILE, &extremes);
         size_tile(&body->voxels, tile * TILE, &actuation);
     }
-    double most = 0.0;
-    for (int64_t i = 0; i < TILE; i++) most = fastest[i] > most ? fastest[i] : most;
-    if (sqrt(most) > body->top_speed) body->top_speed = sqrt(most);
+    body->top_speed = raised(body->top_speed, extremes.speed2);
+    body->farthest = raised(body->farthest, extremes.way2);
     body->time += body->census.dt;
     return fine && lost == 0;
 }
