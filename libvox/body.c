@@ -383,9 +383,35 @@ void body_rest(struct body *body, const double *phase_cycles)
     if (body->model->settings.self_collision) contacts_rest(body);
 }
 
-void body_destroy(struct body *body)
+/* ---- bodies that are used again --------------------------------------------------------------------------- */
+
+static void body_destroy(struct body *body)
 {
+    if (!body) return;
     contacts_destroy(&body->contacts);
     surface_destroy(&body->surface);
     free(body->memory);
+    free(body);
+}
+
+struct body *body_take(const vox_model *model)
+{
+    for (int i = 0; i < MOST_SPARES; i++) {
+        struct body *spare = atomic_exchange(&model->spares->bodies[i], NULL);
+        if (spare) return spare;
+    }
+    return calloc(1, sizeof(struct body));
+}
+
+void body_return(const vox_model *model, struct body *body)
+{
+    for (int i = 0; i < MOST_SPARES && body; i++)
+        body = atomic_exchange(&model->spares->bodies[i], body);
+    body_destroy(body);
+}
+
+void bodies_destroy(vox_model *model)
+{
+    for (int i = 0; i < MOST_SPARES && model->spares; i++) body_destroy(model->spares->bodies[i]);
+    free(model->spares);
 }

@@ -61,16 +61,16 @@ static enum vox_status make_room(struct body *body)
     struct contacts *contacts = &body->contacts;
     const int64_t n = contacts->n_skin;
     contacts->most = least(n * (n - 1) / 2, pairs_per_voxel(body->model) * n);
-    contacts->now.list = malloc(((size_t)contacts->most + 1) * sizeof *contacts->now.list);
-    contacts->first.list = malloc(((size_t)contacts->near_by.pairs.n + 1) * sizeof *contacts->first.list);
-    if (!contacts->now.list || !contacts->first.list) return VOX_NO_MEMORY;
+    if (!pairs_reserve(&contacts->now, contacts->most)) return VOX_NO_MEMORY;
+    if (!pairs_reserve(&contacts->first, contacts->near_by.pairs.n)) return VOX_NO_MEMORY;
     return grid_shape(&contacts->grid, n);
 }
 
 enum vox_status contacts_shape(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
-    contacts_destroy(contacts);
+    free(contacts->skin);
+    contacts->first_is_known = false;
     contacts->skin = malloc((size_t)body->census.n_voxels * sizeof *contacts->skin);
     if (!contacts->skin) return VOX_NO_MEMORY;
     place_skin(body);
@@ -90,7 +90,6 @@ void contacts_destroy(struct contacts *contacts)
     free(contacts->now.list);
     near_by_destroy(&contacts->near_by);
     grid_destroy(&contacts->grid);
-    *contacts = (struct contacts){0};
 }
 
 /* ---- making a list ---------------------------------------------------------------------------------------- */

@@ -196,11 +196,31 @@ static void mark_skin(const struct body *body, const struct near_by *near_by)
     }
 }
 
+bool pairs_reserve(struct pairs *pairs, int64_t capacity)
+{
+    if (pairs->list && capacity <= pairs->capacity) return true;
+    free(pairs->list);
+    pairs->list = malloc(((size_t)capacity + 1) * sizeof *pairs->list);
+    pairs->capacity = pairs->list ? capacity : 0;
+    return pairs->list != NULL;
+}
+
+static void free_bits(struct near_by *near_by)
+{
+    free(near_by->joined);
+    free(near_by->bonds);
+    free(near_by->skin);
+    free(near_by->held);
+    free(near_by->begin);
+    free(near_by->search.reached);
+    free(near_by->search.queue);
+}
+
 static bool allocate(const struct body *body, struct near_by *near_by)
 {
     const size_t n_slots = (size_t)body->n_slots, n_places = (size_t)body->model->vicinity.n_places;
     const size_t size = (size_t)words_of(body) * sizeof(uint64_t);
-    near_by_destroy(near_by);
+    free_bits(near_by);
     near_by->joined = malloc(n_places * size);
     near_by->bonds = malloc(6 * size);
     near_by->skin = malloc(size);
@@ -209,6 +229,7 @@ static bool allocate(const struct body *body, struct near_by *near_by)
     near_by->search.reached = calloc(n_slots, sizeof *near_by->search.reached);
     near_by->search.queue = malloc(n_slots * sizeof *near_by->search.queue);
     near_by->search.from = -1;
+    near_by->search.number = 0;
     return near_by->joined && near_by->bonds && near_by->skin && near_by->held && near_by->begin &&
            near_by->search.reached && near_by->search.queue;
 }
@@ -221,8 +242,7 @@ enum vox_status near_by_shape(const struct body *body, struct near_by *near_by)
     visit(body, near_by, near_by->begin + 1, NULL);
     for (int64_t slot = 0; slot < body->n_slots; slot++) near_by->begin[slot + 1] += near_by->begin[slot];
     near_by->pairs.n = near_by->begin[body->n_slots];
-    near_by->pairs.list = malloc(((size_t)near_by->pairs.n + 1) * sizeof *near_by->pairs.list);
-    if (!near_by->pairs.list) return VOX_NO_MEMORY;
+    if (!pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
     visit(body, near_by, near_by->begin, near_by->pairs.list);
     drop_joined(body, near_by);
     return VOX_OK;
@@ -230,13 +250,6 @@ enum vox_status near_by_shape(const struct body *body, struct near_by *near_by)
 
 void near_by_destroy(struct near_by *near_by)
 {
-    free(near_by->joined);
-    free(near_by->bonds);
-    free(near_by->skin);
-    free(near_by->held);
-    free(near_by->begin);
-    free(near_by->search.reached);
-    free(near_by->search.queue);
+    free_bits(near_by);
     free(near_by->pairs.list);
-    *near_by = (struct near_by){0};
 }

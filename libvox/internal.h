@@ -4,6 +4,7 @@
 #define VOX_INTERNAL_H
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -149,9 +150,17 @@ struct vicinity {
     struct near_cell *cells; /* of voxels that may touch, each pair once */
 };
 
+/* Bodies that nobody uses at the moment: their memory need not be asked for again. */
+#define MOST_SPARES 8
+
+struct spares {
+    _Atomic(struct body *) bodies[MOST_SPARES];
+};
+
 struct vox_model {
     struct vox_settings settings;
     const struct kernel *kernel;
+    struct spares *spares;
     int64_t cells;
     double rest_scale;           /* size / lattice edge without actuation: the edge was rounded to single precision */
     double largest_size;         /* m, of any voxel at any time */
@@ -265,7 +274,7 @@ struct pair {
 };
 
 struct pairs {
-    int64_t n;
+    int64_t n, capacity;
     struct pair *list;
 };
 
@@ -379,12 +388,18 @@ static inline struct vec velocity_of(const struct voxels *v, int64_t slot)
 /* Checks the material codes of a body and counts what it is made of. */
 enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census);
 
-/* Makes a body, of zeros or used before, one of these materials; its memory is kept where it is large enough. To be
- * destroyed in any case. */
+/* A body to be shaped, which may have been used before; NULL if there is no memory. Threads may ask at the same time. */
+struct body *body_take(const vox_model *model);
+
+/* Gives it back. */
+void body_return(const vox_model *model, struct body *body);
+
+/* Frees what was given back. */
+void bodies_destroy(vox_model *model);
+
+/* Makes a body one of these materials; its memory is kept where it is large enough. */
 enum vox_status body_shape(struct body *body, const vox_model *model, const struct census *census,
                            const uint8_t *material);
-void body_destroy(struct body *body);
-
 /* Puts the body at rest at time 0. */
 void body_rest(struct body *body, const double *phase_cycles);
 
@@ -455,6 +470,9 @@ void vicinity_destroy(struct vicinity *vicinity);
 int64_t vicinity_index(const struct vicinity *vicinity, const int32_t by[3]);
 
 /* contact_near.c */
+
+/* Room for so many pairs; those that are there may be lost. */
+bool pairs_reserve(struct pairs *pairs, int64_t capacity);
 
 /* Lists all pairs of the skin in near cells that may collide, sorted. */
 enum vox_status near_by_shape(const struct body *body, struct near_by *near_by);

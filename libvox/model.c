@@ -219,7 +219,8 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     model->substances = malloc(n * sizeof *model->substances);
     model->couplings = malloc(n * n * sizeof *model->couplings);
     model->fixed = calloc((size_t)model->cells, 1);
-    if (!model->substances || !model->couplings || !model->fixed) return VOX_NO_MEMORY;
+    model->spares = calloc(1, sizeof *model->spares);
+    if (!model->substances || !model->couplings || !model->fixed || !model->spares) return VOX_NO_MEMORY;
     derive_constants(model, palette);
     const struct vox_settings *s = &model->settings;
     const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);
@@ -261,5 +262,6 @@ void vox_model_destroy(vox_model *model)
     free(model->couplings);
     free(model->fixed);
     vicinity_destroy(&model->vicinity);
+    bodies_destroy(model);
     free(model);
 }

@@ -93,22 +93,18 @@ static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_s
     }
 }
 
-/* A body that is simulated with one controller after the other. */
-struct workshop {
-    struct body body;
-    const uint8_t *material; /* of the body; NULL if there is none */
-};
-
-/* Makes the body of these materials, unless it is the one that is there. */
-static enum vox_status set_body(struct workshop *workshop, const vox_model *model, const uint8_t *material)
+/* Whether a body is made of the same materials as the one before it. */
+static bool is_same(const vox_model *model, const uint8_t *material, int64_t i)
 {
-    if (workshop->material && memcmp(workshop->material, material, (size_t)model->cells) == 0) return VOX_OK;
+    const uint8_t *own = material + i * model->cells;
+    return i > 0 && memcmp(own - model->cells, own, (size_t)model->cells) == 0;
+}
+
+static enum vox_status set_body(struct body *body, const vox_model *model, const uint8_t *material)
+{
     struct census census;
-    workshop->material = NULL;
-    enum vox_status status = body_census(model, material, &census);
-    if (status == VOX_OK) status = body_shape(&workshop->body, model, &census, material);
-    if (status == VOX_OK) workshop->material = material;
-    return status;
+    const enum vox_status status = body_census(model, material, &census);
+    return status == VOX_OK ? body_shape(body, model, &census, material) : status;
 }
 
 /* The row of a body; there may be no array where there is no sample. */
@@ -134,16 +130,16 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
         status = check_body(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples));
         *culprit = i;
     }
-    struct workshop workshop = {0};
+    struct body *body = status == VOX_OK ? body_take(model) : NULL;
+    if (status == VOX_OK && !body) status = VOX_NO_MEMORY;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         *culprit = i;
-        status = set_body(&workshop, model, material + i * model->cells);
+        if (!is_same(model, material, i)) status = set_body(body, model, material + i * model->cells);
         if (status != VOX_OK) break;
-        body_rest(&workshop.body, phase_cycles + i * model->cells);
-        diverged_step[i] =
-            run(&workshop.body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
+        body_rest(body, phase_cycles + i * model->cells);
+        diverged_step[i] = run(body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
     }
-    body_destroy(&workshop.body);
+    body_return(model, body);
     if (status == VOX_OK) *culprit = -1;
     return status;
 }

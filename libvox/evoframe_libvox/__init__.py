@@ -32,7 +32,7 @@ _NUMBERS: Final = dict(_kernels())
 
 KERNELS: Final = tuple(_NUMBERS)
 """Names of the implementations that this processor can use, the fastest last. ``scalar`` is the reference, one
-bond after the other; the others are one program for several instruction sets, and give the same bits."""
+bond after the other; the others are one program for several instruction sets and give the same bits."""
 
 FIX_ALL: Final = 63
 """All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its
@@ -166,8 +166,8 @@ class Model:
         fixed: ``uint8[X, Y, Z]``, the degrees of freedom that a voxel has not, as bits (see ``FIX_ALL``).
         kernel: Which of ``KERNELS`` computes. By default what the environment variable ``EVOFRAME_KERNEL``
             names, or else the fastest.
-        whole_body: Whether all of a body is computed to the end, even what cannot reach a sample any more.
-            That changes no bit of the results.
+        whole_body: Whether all of a body is computed to the very end, even where no sample can tell. That
+            changes no bit of the results.
 
     Attributes:
         kernel: The name of the kernel that computes, to be recorded with its results.
@@ -177,7 +177,7 @@ class Model:
         MemoryError: There is not enough memory.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - what a model is made of, and how it computes
         self,
         canvas: tuple[int, int, int],
         palette: Mapping[int, Material],

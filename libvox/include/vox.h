@@ -119,7 +119,7 @@ struct vox_settings {
                                       and the original engine's what is beyond factor * horizon edges; 1 .. 2 */
     /* what computes; all kernels but the scalar one give the same bits, that one the same but for roundings */
     int32_t kernel;                /* 0: the fastest that this processor can use; else a number of vox_kernel_name */
-    int32_t whole_body;            /* 0: leaves out what cannot reach a sample any more, which changes no bit */
+    int32_t whole_body;            /* 0: leaves out what no sample can tell, which changes no bit */
     /* what counts as diverged */
     double largest_strain;         /* of a bond, either way; 0 < . <= 1e9 */
     double largest_distance;       /* of a voxel from its start, in longest edges of the canvas; 0 < . <= 1e9 */

@@ -187,6 +187,8 @@ static void next_surroundings(struct source *source, struct vox_settings *s)
     s->self_collision = switches & 2 ? 1 : 0;
     s->contact_friction = switches & 4 ? 1 : 0;
     s->complete_contacts = switches & 8 ? 1 : 0;
+    s->kernel = (switches >> 5) % 3;
+    s->whole_body = switches >> 5 > 5;
     s->gravity = next_number(source, -100.0, 30.0);
     s->floor_slope = next_number(source, -60.0, 60.0);
     s->fluid_drag = next_number(source, 0.0, 2000.0);

@@ -107,12 +107,15 @@ def paper(data: Path) -> Arrays:
 def paper_model() -> Callable[..., Model]:
     """Make the paper's model: slab x = 0 clamped, 22 steps."""
 
-    def make(expansion: float = 0.01, **changes: Any) -> Model:
+    def make(
+        expansion: float = 0.01, *, kernel: str | None = None, whole_body: bool = False, **changes: Any
+    ) -> Model:
         canvas = (20, 8, 8)
         held = np.zeros(canvas, np.uint8)
         held[0] = FIX_ALL
         settings = small_settings(duration=0.07, temperature_amplitude=39.4714242553 - 25.0, **changes)
-        return Model(canvas, {1: material(), 3: material(expansion=expansion)}, settings, held)
+        palette = {1: material(), 3: material(expansion=expansion)}
+        return Model(canvas, palette, settings, held, kernel=kernel, whole_body=whole_body)
 
     return make
 

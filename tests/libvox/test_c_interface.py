@@ -40,6 +40,8 @@ FIELDS = {
     "collision_envelope": 1.5,
     "collision_horizon": 2.0,
     "collision_list_factor": 1.5,
+    "kernel": 0,
+    "whole_body": 0,
     "largest_strain": 100.0,
     "largest_distance": 100.0,
 }
@@ -98,9 +100,9 @@ def test_every_field_is_given_here() -> None:
 def test_every_setting_and_property_has_a_status_of_its_name() -> None:
     """But for the switches: each number that is none is refused by name, and those of materials by code."""
     statuses = {name: code for code, name in ffi.typeof("enum vox_status").elements.items()}
-    switches = {"nx", "ny", "nz", "floor", "self_collision", "contact_friction", "complete_contacts", "used"}
+    switches = {"nx", "ny", "nz", "floor", "self_collision", "contact_friction", "complete_contacts"}
     for fields, culprit in ((FIELDS, -1), (SUBSTANCE, 1)):
-        for name in fields.keys() - switches:
+        for name in fields.keys() - switches - {"whole_body", "used"}:
             bad = float("nan") if isinstance(fields[name], float) else -1
             assert created(statuses[f"VOX_BAD_{name.upper()}"], **{name: bad}) == culprit
 

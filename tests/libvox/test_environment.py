@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evoframe_libvox import Material, Model, Settings
+from evoframe_libvox import KERNELS, Material, Model, Settings
 
 ENVIRONMENT = Path(__file__).parent.parent / "data" / "environment"
 CASES = sorted(path.stem for path in ENVIRONMENT.glob("*.npz"))
@@ -27,19 +27,20 @@ def test_all_cases_are_there() -> None:
     assert [name[:2] for name in CASES] == [f"{n:02}" for n in range(1, 19)]
 
 
-def load(name: str) -> tuple[dict[str, NDArray[Any]], dict[str, Any], Model]:
+def load(name: str, **how: Any) -> tuple[dict[str, NDArray[Any]], dict[str, Any], Model]:
     """Return the arrays of a case, what it is, and its model."""
     with np.load(ENVIRONMENT / f"{name}.npz") as file:
         golden = dict(file)
     case = json.loads(str(golden["case"]))
     palette = {int(code): Material(**fields) for code, fields in case["palette"].items()}
     x, y, z = golden["material"].shape
-    return golden, case, Model((x, y, z), palette, Settings(**case["settings"]), golden["fixed"])
+    return golden, case, Model((x, y, z), palette, Settings(**case["settings"]), golden["fixed"], **how)
 
 
+@pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("name", CASES)
-def test_motion_is_the_engines(name: str, say: Callable[[str], None]) -> None:
-    golden, case, model = load(name)
+def test_motion_is_the_engines(name: str, kernel: str, say: Callable[[str], None]) -> None:
+    golden, case, model = load(name, kernel=kernel)
     body = golden["material"]
     dt, steps = model.time_steps(body[None])
     assert dt[0] == pytest.approx(case["dt"], rel=1e-14)
@@ -55,7 +56,7 @@ def test_motion_is_the_engines(name: str, say: Callable[[str], None]) -> None:
     }
     asked, limit = max(1e-7, 10.0 * case["nudge_max_dev_m"]), LIMITS.get(name, LIMIT)
     deviations = "  ".join(f"{track} {value:7.1e}" for track, value in off.items())
-    say(f"{name:25} {deviations} m (limit {limit:.0e}, asked {asked:.1e})")
+    say(f"{name:25} {kernel:8} {deviations} m (limit {limit:.0e}, asked {asked:.1e})")
     assert max(off.values()) < limit < asked
     assert not result.diverged_step.any()
 

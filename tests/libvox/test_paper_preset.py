@@ -6,15 +6,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evoframe_libvox import Model, Result, Track
+from evoframe_libvox import KERNELS, Model, Result, Track
 
 Arrays = dict[str, NDArray[np.float64]]
 ModelMaker = Callable[..., Model]
 
 
+@pytest.fixture(scope="module", params=KERNELS)
+def kernel(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
 @pytest.fixture(scope="module")
-def result(paper: Arrays, paper_model: ModelMaker) -> Result:
-    return paper_model().simulate(paper["material"], paper["phase_cycles"], range(23))
+def result(paper: Arrays, paper_model: ModelMaker, kernel: str) -> Result:
+    return paper_model(kernel=kernel).simulate(paper["material"], paper["phase_cycles"], range(23))
 
 
 def largest(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
@@ -25,6 +30,16 @@ def test_time_step_and_steps_are_the_engines(paper: Arrays, paper_model: ModelMa
     dt, steps = paper_model().time_steps(paper["material"])
     assert np.allclose(dt, paper["time"][1], rtol=1e-14, atol=0.0)
     assert (steps == 22).all()
+
+
+@pytest.mark.parametrize("whole_body", [False, True])
+def test_what_is_left_out_changes_no_bit(
+    paper: Arrays, paper_model: ModelMaker, result: Result, kernel: str, whole_body: bool
+) -> None:
+    model = paper_model(kernel=kernel, whole_body=whole_body)
+    brief = model.simulate(paper["material"], paper["phase_cycles"], [1, 21], ["tip"])
+    assert np.array_equal(brief.tracks["tip"], result.tracks["tip"][:, [1, 21]])
+    assert not brief.diverged_step.any()
 
 
 def test_nothing_diverges(result: Result) -> None:
