@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Self, TypeAlias
 
 import attrs
@@ -84,8 +84,7 @@ class Coevolution:
     def fittest_pair(self) -> Pair:
         """Return the fittest of each population as a pair; after the last turn, they have met."""
         meeting = self._fittest()
-        [score] = self.evaluator.evaluate(self._designs([meeting]))
-        return self._pair(meeting, score)
+        return self._pair(meeting, self._scores([meeting])[meeting])
 
     def state(self, changed: Collection[str] | None = None) -> dict[str, Any]:
         """Return everything needed to continue after the latest turn, as JSON values.
@@ -166,9 +165,7 @@ class Coevolution:
     def _play(self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float) -> Turn:
         """Score all *meetings* of a turn, and let them judge some of the populations."""
         simulated = self.evaluator.simulations
-        different = list(dict.fromkeys(meetings))
-        designs = self._designs(different)
-        scores = dict(zip(different, self.evaluator.evaluate(designs), strict=True))
+        scores = self._scores(dict.fromkeys(meetings))
         for index in judged:
             self._judge(index, scores, fold)
         self.turn += 1
@@ -177,7 +174,7 @@ class Coevolution:
             index=self.turn,
             reports=tuple(self.populations[index].report() for index in judged),
             pairs=tuple(self._pair(meeting, score) for meeting, score in scores.items()),
-            best_pair=self._best_pair(scores, designs),
+            best_pair=self._best_pair(scores),
             workload=Workload(
                 pairs=len(scores),
                 simulations=self.evaluator.simulations - simulated,
@@ -194,8 +191,15 @@ class Coevolution:
         floor = min((score.value for score in scores.values() if score.value is not None), default=None)
         population.judge([_fitness(row, fold) for row in rows], floor)
 
-    def _designs(self, meetings: Sequence[Meeting]) -> list[Design]:
-        """Decode the meetings; what the first populations of several meetings share is decoded once."""
+    def _scores(self, meetings: Collection[Meeting]) -> dict[Meeting, Score]:
+        """Score different meetings; those that share their first members are simulated side by side."""
+        together = sorted(meetings)
+        scores = self.evaluator.evaluate(self._designs(together), len(together))
+        by_meeting = dict(zip(together, scores, strict=True))
+        return {meeting: by_meeting[meeting] for meeting in meetings}
+
+    def _designs(self, meetings: Iterable[Meeting]) -> Iterator[Design]:
+        """Decode different meetings; what the first members of several share is decoded once."""
         decoded: dict[Meeting, Design] = {(): Design()}
         for meeting in meetings:
             for length, population in enumerate(self.populations, start=1):
@@ -203,7 +207,7 @@ class Coevolution:
                 if shared not in decoded:
                     network = population.network(shared[-1])
                     decoded[shared] = population.encoder.decode(network, decoded[shared[:-1]])
-        return [decoded[meeting] for meeting in meetings]
+            yield decoded.pop(meeting)
 
     def _pair(self, meeting: Meeting, score: Score) -> Pair:
         ids = tuple(
@@ -212,16 +216,16 @@ class Coevolution:
         )
         return Pair(ids, score.value, score.diverged_at)
 
-    def _best_pair(self, scores: Mapping[Meeting, Score], designs: Sequence[Design]) -> BestPair | None:
+    def _best_pair(self, scores: Mapping[Meeting, Score]) -> BestPair | None:
         """Return the best pair of this turn if it is better than all before; ties go to the earliest."""
-        best: tuple[Meeting, Design] | None = None
-        for (meeting, score), design in zip(scores.items(), designs, strict=True):
+        best: Meeting | None = None
+        for meeting, score in scores.items():
             if score.value is not None and (self.best_score is None or score.value > self.best_score):
-                self.best_score, best = score.value, (meeting, design)
+                self.best_score, best = score.value, meeting
         if best is None or self.best_score is None:
             return None
-        meeting, design = best
-        chosen = list(zip(self.populations, meeting, strict=True))
+        [design] = self._designs([best])
+        chosen = list(zip(self.populations, best, strict=True))
         return BestPair(
             turn=self.turn,
             score=self.best_score,
@@ -253,6 +257,6 @@ def _are_positions(chosen: NDArray[Any], size: int, members: int) -> bool:
     return (
         chosen.shape == (size,)
         and np.issubdtype(chosen.dtype, np.integer)
-        and len(np.unique(chosen)) == size
+        and len(set(chosen.tolist())) == size
         and bool(((chosen >= 0) & (chosen < members)).all())
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import attrs
 
@@ -14,7 +14,8 @@ from evoframe.values import Design, Record
 
 __all__ = ["Evaluator", "Score", "simulated"]
 
-_BATCHES_PER_WORKER = 4  # small enough to balance bodies of different cost
+_LARGEST_BATCH = 4  # as many share the cost of a call, and what the solver prepares for their common body
+_BATCHES_PER_WORKER = 2  # of what is left: the last ones are small, so that all workers end together
 
 
 @attrs.frozen
@@ -47,30 +48,51 @@ class Evaluator:
     simulations: int = 0
     _cache: dict[bytes, Score] = attrs.field(factory=dict, init=False, repr=False)
 
-    def evaluate(self, designs: Sequence[Design]) -> list[Score]:
+    def evaluate(self, designs: Iterable[Design], count: int) -> list[Score]:
         """Return the score of each design; equal designs, now or earlier, are simulated once.
+
+        Args:
+            designs: Are asked for one after the other, while those before are simulated.
+            count: How many there are.
 
         Raises:
             RunError: The objective gave a score that is not finite for a simulation that did not diverge.
         """
-        record = self.objective.record
-        keys = [self.simulator.key(design, record) for design in designs]
-        new = {key: design for key, design in zip(keys, designs, strict=True) if key not in self._cache}
-        scores = self.workers.map(self._simulate, self._batches(list(new.values())))
-        self._cache.update(zip(new, (score for batch in scores for score in batch), strict=True))
-        self.simulations += len(new)
+        keys: list[bytes] = []
+        for scores in self.workers.map(self._simulate, self._batches(designs, count, keys)):
+            self._cache |= scores
+            self.simulations += len(scores)
         return [self._cache[key] for key in keys]
 
     def close(self) -> None:
         """Let the workers go."""
         self.workers.close()
 
-    def _batches(self, designs: list[Design]) -> list[list[Design]]:
-        size = max(1, math.ceil(len(designs) / (_BATCHES_PER_WORKER * self.workers.workers)))
-        return [designs[start : start + size] for start in range(0, len(designs), size)]
+    def _batches(
+        self, designs: Iterable[Design], count: int, keys: list[bytes]
+    ) -> Iterator[dict[bytes, Design]]:
+        """Yield what has to be simulated, in batches, and note the key of every design in *keys*."""
+        record = self.objective.record
+        known: set[bytes] = set()
+        batch: dict[bytes, Design] = {}
+        for design in designs:
+            keys.append(key := self.simulator.key(design, record))
+            if key not in known and key not in self._cache:
+                known.add(key)
+                batch[key] = design
+            if len(batch) >= self._batch_size(count - len(keys)):
+                yield batch
+                batch = {}
+        if batch:
+            yield batch
 
-    def _simulate(self, designs: list[Design]) -> list[Score]:
-        return simulated(self.simulator, designs, self.objective.record, self.objective)
+    def _batch_size(self, left: int) -> int:
+        return min(max(1, left // (_BATCHES_PER_WORKER * self.workers.workers)), _LARGEST_BATCH)
+
+    def _simulate(self, batch: Mapping[bytes, Design]) -> dict[bytes, Score]:
+        designs = list(batch.values())
+        scores = simulated(self.simulator, designs, self.objective.record, self.objective)
+        return dict(zip(batch, scores, strict=True))
 
 
 def simulated(

@@ -26,7 +26,8 @@ class Observers:
         Warns:
             PluginWarning: An observer raised.
         """
-        for plugin in list(self._active):
+        listening = [implementation.plugin for implementation in self._caller(hook).get_hookimpls()]
+        for plugin in [plugin for plugin in self._active if plugin in listening]:
             others = [other for other in self._plugins if other is not plugin]
             try:
                 self._manager.subset_hook_caller(hook, others)(**arguments)
@@ -35,3 +36,7 @@ class Observers:
                 name = self._manager.get_name(plugin)
                 cause = f"{type(error).__name__}: {error}"
                 warnings.warn(f"observer '{name}' is disabled: {cause}", PluginWarning, stacklevel=2)
+
+    def _caller(self, hook: str) -> pluggy.HookCaller:
+        caller: pluggy.HookCaller = getattr(self._manager.hook, hook)
+        return caller

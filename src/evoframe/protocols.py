@@ -222,7 +222,8 @@ class Objective(Protocol):
 class ExecutorRun(Protocol):
     """Workers that are ready.
 
-    Law: results come in the order of the items, whatever the number of workers.
+    Laws: results come in the order of the items, whatever the number of workers; items are asked for where
+    :meth:`map` is called, once, and may be made while others are worked on.
     """
 
     @property
@@ -230,7 +231,7 @@ class ExecutorRun(Protocol):
         """How many items are worked on at once."""
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
-        """Return ``[function(item) for item in items]``; an exception of *function* is raised here."""
+        """Return ``[function(item) for item in items]``; an exception of either is raised here."""
 
     def close(self) -> None:
         """Let the workers go."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import statistics
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from loops import continued, history, stopped
 
-from evoframe import PopulationReport, RunConfig, RunError, Turn, assemble
+from evoframe import Design, PopulationReport, Record, RunConfig, RunError, Turn, assemble
 from evoframe.population import Population
 
 Load = Callable[..., RunConfig]
@@ -40,6 +41,21 @@ def test_first_everyone_meets_everyone_and_gets_the_arithmetic_mean(toy_config: 
         for member in report.members:
             assert sum(pair.genomes[position] == member.id for pair in turn.pairs) == (5, 6)[position]
         assert_fitness_is_the_mean(turn, report, position, rel=1e-14)
+
+
+def test_designs_that_share_their_first_member_are_simulated_side_by_side(toy_config: Load) -> None:
+    asked: list[float] = []
+
+    class Noting(toys.Product):
+        def key(self, design: Design, record: Record) -> bytes:
+            asked.append(float(design.roles["a"][0]))
+            return super().key(design, record)
+
+    coevolution = assemble(toy_config())
+    coevolution.evaluator.simulator = Noting()
+    for turn in coevolution:
+        assert len([a for a, _ in itertools.groupby(asked)]) == len({pair.genomes[0] for pair in turn.pairs})
+        asked.clear()
 
 
 def test_then_populations_take_turns_in_order(toy_config: Load) -> None:

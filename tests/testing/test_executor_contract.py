@@ -1,3 +1,4 @@
+import contextlib
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any, ClassVar
@@ -12,6 +13,8 @@ STARTS = "test_it_starts_workers"
 EVERY = "test_every_item_has_its_result"
 ORDER = "test_results_come_in_the_order_of_the_items"
 GENERATOR = "test_items_may_come_from_a_generator"
+ASKED = "test_items_are_asked_for_where_map_is_called"
+NO_ITEM = "test_an_exception_of_the_items_is_raised"
 RAISED = "test_an_exception_is_raised_where_map_is_called"
 SURVIVE = "test_workers_survive_an_exception"
 AGAIN = "test_workers_can_be_started_again"
@@ -71,6 +74,19 @@ class ReadsTwice(Run):
         return super().map(function, items)[:n]
 
 
+class AsksElsewhere(Run):
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+        return super().map(function, self.pool.submit(list, items).result())
+
+
+class StopsEarly(Run):
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+        made: list[Any] = []
+        with contextlib.suppress(KeyError):
+            made.extend(items)
+        return super().map(function, made)
+
+
 class Swallows(Run):
     def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         results = []
@@ -107,6 +123,8 @@ class Shared(Run):
         (AsCompleted, ORDER, AssertionError),
         (OnlyTwo, EVERY, AssertionError),
         (ReadsTwice, GENERATOR, AssertionError),
+        (AsksElsewhere, ASKED, AssertionError),
+        (StopsEarly, NO_ITEM, pytest.fail.Exception),
         (Swallows, RAISED, pytest.fail.Exception),
         (DiesOfAnException, SURVIVE, RuntimeError),
         (Shared, AGAIN, RuntimeError),

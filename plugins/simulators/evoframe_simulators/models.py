@@ -18,7 +18,15 @@ from evoframe_simulators.sampling import Clock
 if TYPE_CHECKING:
     from evoframe_simulators.vox import Vox
 
-__all__ = ["amplitude_of", "clocks_of", "model_of", "possible_clocks", "without_number"]
+__all__ = [
+    "acting_codes",
+    "amplitude_of",
+    "clock_of",
+    "clocks_of",
+    "model_of",
+    "possible_clocks",
+    "without_number",
+]
 
 _UNLIMITED = 2**63 - 1
 
@@ -33,6 +41,28 @@ def model_of(vox: Vox, canvas: tuple[int, int, int]) -> libvox.Model:
     return libvox.Model(
         canvas, solver_palette(materials_of(vox)), _settings(vox), fixed_mask(vox.fixed, canvas)
     )
+
+
+@functools.lru_cache(maxsize=16)
+def acting_codes(vox: Vox) -> NDArray[np.bool_]:
+    """Return of each code whether the offsets change the size of its voxels, ``bool[256]``, read-only."""
+    acting = np.zeros(256, np.bool_)
+    if amplitude_of(vox) != 0.0:
+        for code, material in materials_of(vox).items():
+            acting[code] = material.expansion_coefficient != 0.0
+    acting.setflags(write=False)
+    return acting
+
+
+@functools.lru_cache(maxsize=8)  # the bodies that meet many controllers just now
+def clock_of(vox: Vox, canvas: tuple[int, int, int], cells: bytes) -> Clock:
+    """Return the clock of a body that is given by the bytes of its material codes.
+
+    Raises:
+        ValueError: It cannot be simulated; says why.
+    """
+    [clock] = clocks_of(vox, model_of(vox, canvas), np.frombuffer(cells, np.uint8).reshape(1, *canvas))
+    return clock
 
 
 def clocks_of(vox: Vox, model: libvox.Model, material: NDArray[np.uint8]) -> list[Clock]:

@@ -56,8 +56,10 @@ class Clock:
         return np.insert(kept, 0, 0) if record.initial else kept
 
     def samples(self, record: Record) -> NDArray[np.int64]:
-        """Return the solver's steps after which a simulation is sampled, ``int64[samples]``."""
-        return self.nominal(record) * self.substeps
+        """Return the solver's steps after which a simulation is sampled, ``int64[samples]``, read-only."""
+        steps = self.nominal(record) * self.substeps
+        steps.setflags(write=False)  # bodies with the same clock share them
+        return steps
 
     def count(self, every: float) -> int:
         """Return how many samples are taken, that of the state before the first step not counted."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -27,7 +28,14 @@ from evoframe import (
 )
 from evoframe_simulators.bodies import check_codes, check_design, read_bodies
 from evoframe_simulators.materials import PaletteMaterial, check_palette, materials_of
-from evoframe_simulators.models import amplitude_of, clocks_of, model_of, possible_clocks, without_number
+from evoframe_simulators.models import (
+    acting_codes,
+    clock_of,
+    clocks_of,
+    model_of,
+    possible_clocks,
+    without_number,
+)
 from evoframe_simulators.regions import FixedRegion
 from evoframe_simulators.sampling import check_samples
 from evoframe_simulators.tracks import FURTHER, POINTS, check_room, check_tracks, shape_of
@@ -46,7 +54,7 @@ def _within(least: float, most: float) -> list[Any]:
     return [validators.ge(least), validators.le(most)]
 
 
-@attrs.frozen
+@attrs.frozen(cache_hash=True)  # its models are looked up by it
 class Vox:
     """Voxels on libvox; the defaults are the paper's (paper.md, "The simulation of one pair").
 
@@ -154,10 +162,10 @@ class Vox:
         """
         check_design(design)
         material, phase = design.roles[MORPHOLOGY], self._phase_cycles(design)
-        acting = phase[np.isin(material, self._acting_codes())]
+        acting = phase[acting_codes(self).take(material)]
         with np.errstate(over="ignore"):  # left to the solver to refuse
             single = acting.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
-        digest = hashlib.blake2b(repr((material.shape, record)).encode(), digest_size=20)
+        digest = hashlib.blake2b(_written(material.shape, record), digest_size=20)
         digest.update(material.tobytes())
         digest.update(single.tobytes())
         return digest.digest()
@@ -241,13 +249,13 @@ class Vox:
             raise ConfigurationError(f"vox does not write '{format}'; formats: {', '.join(self.formats)}")
         check_design(design)
         material, phase = design.roles[MORPHOLOGY], self._phase_cycles(design)
-        acting = np.isin(material, self._acting_codes())
+        acting = acting_codes(self)[material]
         check_codes(material, materials_of(self))
         return Export(write_vxa(self, material, phase, acting), left_out(self))
 
     def provenance(self) -> dict[str, str]:
         """Return the kernel that computes."""
-        return {"libvox kernel": libvox.KERNEL}
+        return {"libvox kernel": model_of(self, (1, 1, 1)).kernel}
 
     @classmethod
     def _as_in(cls, file: VxaFile) -> Vox:
@@ -262,33 +270,31 @@ class Vox:
         phase: NDArray[np.float64] = design.roles[CONTROLLER]
         return phase if self.phase_unit == "cycles" else phase / math.tau
 
-    def _acting_codes(self) -> list[int]:
-        """Return the codes of materials whose size the offsets change."""
-        if amplitude_of(self) == 0.0:
-            return []
-        return [code for code, material in materials_of(self).items() if material.expansion_coefficient]
-
     def _simulate(
         self, canvas: tuple[int, int, int], designs: dict[int, Design], record: Record
     ) -> dict[int, Outcome]:
         """Simulate designs on one canvas together, as far as they have the same number of samples."""
         model = model_of(self, canvas)
-        numbers = list(designs)
-        material = np.stack([design.roles[MORPHOLOGY] for design in designs.values()])
-        phase = np.stack([self._phase_cycles(design) for design in designs.values()])
-        clocks = clocks_of(self, model, material)
-        samples = [clock.samples(record) for clock in clocks]
+        clocks = {
+            number: clock_of(self, canvas, design.roles[MORPHOLOGY].tobytes())
+            for number, design in designs.items()
+        }
+        samples = {clock: clock.samples(record) for clock in set(clocks.values())}
         tracks = tuple(track for track in (*POINTS, *FURTHER) if track in record.tracks)
         outcomes: dict[int, Outcome] = {}
-        for count in {len(taken) for taken in samples}:
+        for count in {len(taken) for taken in samples.values()}:
             check_room(tracks, canvas, count)
-            chosen = [row for row, taken in enumerate(samples) if len(taken) == count]
-            steps = np.stack([samples[row] for row in chosen])
-            result = model.simulate(material[chosen], phase[chosen], steps, tracks)
-            for place, row in enumerate(chosen):
-                outcomes[numbers[row]] = Outcome(
-                    steps=samples[row],
-                    times=samples[row] * np.float64(clocks[row].time_step),
+            chosen = {number: clock for number, clock in clocks.items() if len(samples[clock]) == count}
+            result = model.simulate(
+                np.stack([designs[number].roles[MORPHOLOGY] for number in chosen]),
+                np.stack([self._phase_cycles(designs[number]) for number in chosen]),
+                np.stack([samples[clock] for clock in chosen.values()]),
+                tracks,
+            )
+            for place, (number, clock) in enumerate(chosen.items()):
+                outcomes[number] = Outcome(
+                    steps=samples[clock],
+                    times=samples[clock] * np.float64(clock.time_step),
                     tracks={name: track[place] for name, track in result.tracks.items()},
                     diverged_at=int(result.diverged_step[place]) or None,
                 )
@@ -301,6 +307,12 @@ def _checked(path: Path, function: Callable[..., R], *arguments: Any) -> R:
         return function(*arguments)
     except (InputError, ValueError) as error:
         raise InputError(f"{path}: {without_number(error)}") from error
+
+
+@functools.lru_cache(maxsize=16)
+def _written(shape: tuple[int, ...], record: Record) -> bytes:
+    """Return in bytes what a key says beside what stands in the cells."""
+    return repr((shape, record)).encode()
 
 
 def _listed(_: Any, __: Any, value: Any) -> Any:

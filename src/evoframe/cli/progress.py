@@ -18,6 +18,7 @@ from evoframe.values import Turn
 __all__ = ["Progress"]
 
 _LINE_INTERVAL = 5.0  # s
+_BAR_INTERVAL = 0.25  # s; drawing costs as much as a simulation or two
 
 
 class Progress:
@@ -53,21 +54,23 @@ class Progress:
         self._simulations += turn.workload.simulations
         self._best |= {report.population: report.best for report in turn.reports}
         now = time.monotonic()
-        if self._bar is not None:
-            description = f"turn {turn.index}/{self._turns}" if turn.reports else "closing meeting"
-            self._bar.update(self._task, advance=1, description=description, detail=self._detail(now))
-        elif now - self._shown >= _LINE_INTERVAL or turn.index == self._turns:
+        interval = _LINE_INTERVAL if self._bar is None else _BAR_INTERVAL
+        if now - self._shown >= interval or turn.index == self._turns:
             self._shown = now
-            self._console.print(
-                f"turn {turn.index}/{self._turns}  {self._detail(now)}  {self._left(turn.index, now)}",
-                soft_wrap=True,
-            )
+            self._show(turn, now)
 
     @hookimpl
     def evoframe_run_finished(self) -> None:
         """Leave the terminal as it was."""
         if self._bar is not None:
             self._bar.stop()
+
+    def _show(self, turn: Turn, now: float) -> None:
+        done = f"turn {turn.index}/{self._turns}" if turn.reports else "closing meeting"
+        if self._bar is None:
+            self._console.print(f"{done}  {self._detail(now)}  {self._left(turn.index, now)}", soft_wrap=True)
+        else:
+            self._bar.update(self._task, completed=turn.index + 1, description=done, detail=self._detail(now))
 
     def _detail(self, now: float) -> str:
         best = "  ".join(f"{population} {fitness:.5f}" for population, fitness in self._best.items())
@@ -96,5 +99,6 @@ def _bar(console: Console) -> _Bar:
         progress.TextColumn("left"),
         console=console,
         transient=True,
+        refresh_per_second=1 / _BAR_INTERVAL,
         expand=True,
     )

@@ -81,7 +81,7 @@ def _evaluate(job: Job) -> list[Score]:
     evaluator = evaluator_of(job.config)
     try:
         with naming(job.path):
-            return evaluator.evaluate(job.designs)
+            return evaluator.evaluate(job.designs, len(job.designs))
     finally:
         evaluator.close()
 

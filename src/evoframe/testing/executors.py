@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -45,6 +46,24 @@ class ExecutorContract(ComponentContract[Executor]):
         with self._started() as run:
             assert run.map(_square, iter([3, 1, 2])) == [9, 1, 4]
 
+    def test_items_are_asked_for_where_map_is_called(self) -> None:
+        """In that thread: what makes the items may not like others."""
+        asked: list[int] = []
+
+        def items() -> Iterator[int]:
+            for item in range(5):
+                asked.append(threading.get_ident())
+                yield item
+
+        with self._started() as run:
+            run.map(_square, items())
+        assert asked == [threading.get_ident()] * 5
+
+    def test_an_exception_of_the_items_is_raised(self) -> None:
+        """What cannot be made is not left out."""
+        with self._started() as run, pytest.raises(KeyError, match="no item 2"):
+            run.map(_square, _two_items())
+
     def test_an_exception_is_raised_where_map_is_called(self) -> None:
         """That of the first item which fails, as if the items were worked on one by one."""
         with self._started() as run, pytest.raises(ZeroDivisionError, match=r"^item 2$"):
@@ -75,6 +94,12 @@ class ExecutorContract(ComponentContract[Executor]):
 
 def _square(item: int) -> int:
     return item * item
+
+
+def _two_items() -> Iterator[int]:
+    yield 0
+    yield 1
+    raise KeyError("no item 2")
 
 
 def _sleep(delay: float) -> float:

@@ -1,7 +1,8 @@
+import itertools
 import os
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -127,34 +128,73 @@ def test_after_a_failure_nothing_goes_on(two_threads: ExecutorRun) -> None:
     assert finished == so_far
 
 
-def test_a_failing_generator_of_items_begins_nothing(two_threads: ExecutorRun) -> None:
-    begun: list[int] = []
+def test_the_first_items_are_worked_on_while_the_next_are_made(two_threads: ExecutorRun) -> None:
+    begun = threading.Event()
+
+    def items() -> Iterator[Callable[[], object]]:
+        yield begun.set
+        assert begun.wait(timeout=10)
+        yield begun.is_set
+
+    assert two_threads.map(lambda item: item(), items()) == [None, True]
+
+
+def test_after_a_failure_no_more_items_are_asked_for(two_threads: ExecutorRun) -> None:
+    with pytest.raises(ZeroDivisionError):
+        two_threads.map(lambda item: 1 / item, itertools.repeat(0))
+
+
+@pytest.mark.parametrize("error", [KeyError, KeyboardInterrupt])
+def test_when_items_cannot_be_made_nothing_goes_on(
+    two_threads: ExecutorRun, error: type[BaseException]
+) -> None:
+    finished = []
+
+    def slow(item: int) -> None:
+        time.sleep(0.05)
+        finished.append(item)
+
+    def items() -> Iterator[int]:
+        yield from range(3)
+        raise error("items")
+
+    with pytest.raises(error, match="items"):
+        two_threads.map(slow, items())
+    so_far = list(finished)
+    time.sleep(0.1)
+    assert finished == so_far
+
+
+def test_what_failed_before_an_item_that_cannot_be_made_is_raised(two_threads: ExecutorRun) -> None:
+    def slow_failure(_: int) -> None:
+        time.sleep(0.02)
+        raise ZeroDivisionError
 
     def items() -> Iterator[int]:
         yield 1
         raise KeyError("items")
 
-    with pytest.raises(KeyError, match="items"):
-        two_threads.map(begun.append, items())
-    assert begun == []
+    with pytest.raises(ZeroDivisionError):
+        two_threads.map(slow_failure, items())
 
 
-def test_an_interrupt_of_the_caller_drops_the_rest(
-    two_threads: ExecutorRun, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    begun = []
+@pytest.mark.parametrize("place", ["items", "function"])
+def test_an_interrupt_of_the_caller_drops_the_rest(two_threads: ExecutorRun, place: str) -> None:
+    caller, begun = threading.get_ident(), []
 
     def work(item: int) -> None:
         begun.append(item)
         time.sleep(0.02)
+        if place == "function" and threading.get_ident() == caller:
+            raise KeyboardInterrupt
 
-    def interrupted(*_: object, **__: object) -> None:
-        monkeypatch.undo()
-        raise KeyboardInterrupt
+    def items() -> Iterator[int]:
+        yield from range(1000)
+        if place == "items":
+            raise KeyboardInterrupt
 
-    monkeypatch.setattr("evoframe_executors.wait", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        two_threads.map(work, range(1000))
+        two_threads.map(work, items())
     assert len(begun) < 100
 
 

@@ -7,8 +7,8 @@ have all their digits, so that what is read again is what was written.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from html import escape  # that of xml.sax imports half the network
 from typing import TYPE_CHECKING, Any
-from xml.sax.saxutils import escape
 
 import attrs
 import numpy as np
@@ -213,7 +213,7 @@ def _material(material: PaletteMaterial, code: int) -> Iterator[str]:
     expansion = material.expansion_coefficient
     colour = _PASSIVE if expansion == 0.0 else _EXPANDING if expansion > 0.0 else _CONTRACTING
     yield from _values({"MatType": 0})
-    yield from _node("Name", escape(" ".join(material.name.split())) or f"material {code}")
+    yield from _node("Name", escape(" ".join(material.name.split()), quote=False) or f"material {code}")
     yield from _section("Display", {**dict(zip(("Red", "Green", "Blue"), colour, strict=True)), "Alpha": 1})
     mechanical = {
         "MatModel": 0,
