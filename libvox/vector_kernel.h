@@ -5,6 +5,7 @@
  *
  * A missing bond is computed like any other and then left out: no lane depends on another. */
 #include <float.h>
+#include <string.h>
 
 #include "internal.h"
 #include "lanes.h"
@@ -203,8 +204,16 @@ IN_LOOP double arc_ratio(double cosine, bool far)
 
 /* What the bonds of a tile do to their ends, in the world. */
 struct loads {
-    lanes force_lower[3], moment_lower[3], force_upper[3], moment_upper[3];
+    lanes force_lower[3], moment_lower[3]; /* of all axes together */
+    lanes force_upper[3], moment_upper[3];
 } IN_LINES;
+
+IN_LOOP void add(lanes to[3], int64_t i, bool there, struct vec v)
+{
+    to[0][i] += choose(there, v.x, 0.0);
+    to[1][i] += choose(there, v.y, 0.0);
+    to[2][i] += choose(there, v.z, 0.0);
+}
 
 IN_LOOP void put(lanes to[3], int64_t i, bool there, struct vec v)
 {
@@ -329,10 +338,13 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const st
                     moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend, &speed, speed.b));
         const struct matrix m = large ? matrix_of(frame) : frame_at(frames, i);
         const bool there = is_there[i] != 0.0;
-        put(loads->force_lower, i, there, turn(&m, across(axis, vec_add(spring, brake))));
-        put(loads->moment_lower, i, there, turn(&m, across(axis, moment_lower)));
+        const struct vec force_lower = turn(&m, across(axis, vec_add(spring, brake)));
+        add(loads->force_lower, i, there, force_lower);
+        add(loads->moment_lower, i, there, turn(&m, across(axis, moment_lower)));
         put(loads->moment_upper, i, there, turn(&m, across(axis, moment_upper)));
-        if (!coupling) {
+        if (coupling) {
+            put(loads->force_upper, i, there, force_lower);
+        } else {
             const struct vec own = force_of(upper_end->stretch, upper_end->shear, upper_end->bend_shear, &speed);
             put(loads->force_upper, i, there, turn(&m, across(axis, vec_add(spring, own))));
         }
@@ -351,37 +363,41 @@ IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
     for (int64_t i = 0; i < TILE; i++) to[i] -= from[i];
 }
 
-/* The lower ends of the whole tile come before the upper ones, whatever the length of a vector. */
-IN_LOOP void unload(const struct voxels *v, int64_t lower, int64_t upper, const struct loads *loads, bool opposite)
+IN_LOOP void unload_upper(const struct voxels *v, int64_t base, const struct loads *loads)
 {
-    double *const force[] = {v->force.x, v->force.y, v->force.z};
-    double *const torque[] = {v->torque.x, v->torque.y, v->torque.z};
-    for (int k = 0; k < 3; k++) {
-        add_lanes(force[k] + lower, loads->force_lower[k]);
-        subtract_lanes(torque[k] + lower, loads->moment_lower[k]);
-    }
-    for (int k = 0; k < 3; k++) {
-        subtract_lanes(force[k] + upper, opposite ? loads->force_lower[k] : loads->force_upper[k]);
-        subtract_lanes(torque[k] + upper, loads->moment_upper[k]);
-    }
+    subtract_lanes(v->force.x + base, loads->force_upper[0]);
+    subtract_lanes(v->force.y + base, loads->force_upper[1]);
+    subtract_lanes(v->force.z + base, loads->force_upper[2]);
+    subtract_lanes(v->torque.x + base, loads->moment_upper[0]);
+    subtract_lanes(v->torque.y + base, loads->moment_upper[1]);
+    subtract_lanes(v->torque.z + base, loads->moment_upper[2]);
+}
+
+IN_LOOP void unload_lower(const struct voxels *v, int64_t base, const struct loads *loads)
+{
+    add_lanes(v->force.x + base, loads->force_lower[0]);
+    add_lanes(v->force.y + base, loads->force_lower[1]);
+    add_lanes(v->force.z + base, loads->force_lower[2]);
+    subtract_lanes(v->torque.x + base, loads->moment_lower[0]);
+    subtract_lanes(v->torque.y + base, loads->moment_lower[1]);
+    subtract_lanes(v->torque.z + base, loads->moment_lower[2]);
 }
 
 IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis, int64_t base,
-                           double per_second, double most, const struct frames *frames)
+                           double per_second, double most, const struct frames *frames, struct loads *loads)
 {
     if (!body->bonds[axis].tile_used[base / TILE]) return true;
     const struct voxels *v = &body->voxels;
     const struct bonds *b = &body->bonds[axis];
     struct sight sight;
-    struct loads loads;
     int64_t overstrained;
     if (look(v, b, axis, base, frames, &sight) == 0)
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, false, false, frames, &sight, &loads);
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, false, false, frames, &sight, loads);
     else if (straighten(b->there + base, &sight) == 0)
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, &loads);
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, loads);
     else
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, &loads);
-    unload(v, base, base + b->step, &loads, coupling != NULL);
+        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, loads);
+    unload_upper(v, base + b->step, loads);
     return overstrained == 0;
 }
 
@@ -391,12 +407,15 @@ IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupl
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;
     struct frames frames;
+    struct loads loads;
     bool fine = true;
     for (int64_t base = 0; base < body->n_slots; base += TILE) {
         find_frames(&body->voxels, base, &frames);
-        fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most, &frames);
-        fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most, &frames);
-        fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most, &frames);
+        memset(&loads, 0, sizeof loads.force_lower + sizeof loads.moment_lower);
+        fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most, &frames, &loads);
+        fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most, &frames, &loads);
+        fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most, &frames, &loads);
+        unload_lower(&body->voxels, base, &loads);
     }
     return fine;
 }

@@ -31,8 +31,8 @@ def _kernels() -> Iterator[tuple[str, int]]:
 _NUMBERS: Final = dict(_kernels())
 
 KERNELS: Final = tuple(_NUMBERS)
-"""Names of the implementations that this processor can use, the fastest last. ``scalar`` is the reference, one
-bond after the other; the others are one program for several instruction sets and give the same bits."""
+"""Names of what can compute on this processor, the fastest last. ``scalar`` is the reference, one
+bond after the other. The others are one program for several instruction sets, with the same bits."""
 
 FIX_ALL: Final = 63
 """All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its
