@@ -11,11 +11,10 @@ IN_LOOP double choose(bool first, double a, double b)
     return first ? a : b;
 }
 
-/* 1 / sqrt(1 - x/2) for x from 0 to 0.0012: its power series. */
+/* 1 / sqrt(1 - x/2) for x from 0 to 0.0012: its power series, as far as it changes a digit. */
 IN_LOOP double inverse_root_of_half(double x)
 {
-    const double high = 35.0 / 2048 + x * (63.0 / 8192 + x * (231.0 / 65536));
-    return 1.0 + x * (1.0 / 4 + x * (3.0 / 32 + x * (5.0 / 128 + x * high)));
+    return 1.0 + x * (1.0 / 4 + x * (3.0 / 32 + x * (5.0 / 128 + x * (35.0 / 2048))));
 }
 
 /* asin(sqrt(y)) / sqrt(y) for y from 0 to 1/4: the polynomial of its degree with the least error, 1.7e-17. */

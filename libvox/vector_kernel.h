@@ -13,6 +13,10 @@
 /* Limits of the frames, as in bond.c. */
 #define SMALL_COSINE 0.9999625024343469
 #define LARGE_COSINE 0.9999546280051071
+#define SMALL_TURN 0.05
+#define LARGE_TURN 0.055
+#define SMALL_EXTENSION 1.30
+#define LARGE_EXTENSION 1.43
 #define SLOPE_OF_SMALL_TURN 0.01732
 #define COSINE_OF_SMALL_ROTATION 0.9988
 
@@ -49,10 +53,11 @@ IN_LOOP struct matrix matrix_of(struct quat q)
 {
     const double ww = q.w * q.w, xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
     const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
+    const double middle = ww - xx, apart = yy - zz;
     return (struct matrix){
         {(ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)},
-        {2.0 * (xy + wz), (ww + yy) - (xx + zz), 2.0 * (yz - wx)},
-        {2.0 * (xz - wy), 2.0 * (yz + wx), (ww + zz) - (xx + yy)},
+        {2.0 * (xy + wz), middle + apart, 2.0 * (yz - wx)},
+        {2.0 * (xz - wy), 2.0 * (yz + wx), middle - apart},
     };
 }
 
@@ -133,10 +138,12 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         const struct quat turned = quat_mul(quat_conj(lower), upper);
         const struct vec turned_axis = along(axis, (struct vec){turned.x, turned.y, turned.z});
         const double rest = 0.5 * (size[i] + size[i + step]), aside = fabs(u.y) + fabs(u.z);
-        /* turns and extensions against their limits without dividing; backwards, a turn is negative */
-        const bool leaves = (turned.w <= LARGE_COSINE) | ((aside > 0.055 * u.x) & (u.x >= 0.0)) | (u.x > 1.43 * rest);
-        const bool returns = (turned.w > SMALL_COSINE) & ((aside < 0.05 * u.x) | (u.x < 0.0)) & (u.x < 1.30 * rest);
-        const bool was = was_small[i] != 0.0, is = (was & !leaves) | (!was & returns);
+        /* turn and extension against their limits without dividing; backwards, a turn is negative */
+        const double was = was_small[i]; /* 1 or 0, so the limits are exact enough */
+        const double turn = SMALL_TURN + was * (LARGE_TURN - SMALL_TURN);
+        const double extension = SMALL_EXTENSION + was * (LARGE_EXTENSION - SMALL_EXTENSION);
+        const double cosine = SMALL_COSINE + was * (LARGE_COSINE - SMALL_COSINE);
+        const bool is = (turned.w > cosine) & ((aside <= turn * u.x) | (u.x < 0.0)) & (u.x <= extension * rest);
         sight->stretch[0][i] = u.x;
         sight->stretch[1][i] = u.y;
         sight->stretch[2][i] = u.z;
