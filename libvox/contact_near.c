@@ -151,7 +151,7 @@ static bool is_at(const struct body *body, struct pair pair, const int32_t by[3]
 
 /* Hands each pair of voxels in near cells to `begin`, which counts the pairs of each voxel, or, if there is one, to the
  * list, where `begin` says at which place the next pair of a voxel goes. */
-static void visit(const struct body *body, const struct near_by *near_by, int32_t *begin, struct pair *list)
+static void visit(const struct body *body, const struct near_by *near_by, int64_t *begin, struct pair *list)
 {
     const struct vicinity *vicinity = &body->model->vicinity;
     for (int64_t i = 0; i < vicinity->n_cells; i++) {

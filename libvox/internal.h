@@ -307,7 +307,7 @@ struct near_by {
     uint64_t *joined;      /* [places][words] where one of the shortest ways to a place is bonds */
     uint64_t *bonds;       /* [6][words] */
     uint64_t *skin, *held; /* [words] voxels that may touch others; voxels that are held in all degrees of freedom */
-    int32_t *begin;        /* [slots + 1] */
+    int64_t *begin;        /* [slots + 1] */
     struct search search;
 };
 
