@@ -1,0 +1,85 @@
+"""How fast are networks, beside neat-python's?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import neat
+import numpy as np
+from neat.activations import ActivationFunctionSet
+from numpy.typing import NDArray
+
+from benchmarks.report import Row, Section, SectionError, Table
+from benchmarks.timing import Action, Effort, interleaved
+from evoframe_evolvers import RandomSearch
+from evoframe_evolvers.genomes import NO_SELECTION, GenePool
+from evoframe_evolvers.random_search import RandomSearchRun
+from evoframe_libcppn import ACTIVATIONS, CppnNetwork
+
+__all__ = ["networks"]
+
+_SEED = 1
+_ENDS = {"morphology": (3, 2), "controller": (4, 1)}
+_GRID = (12, 6, 6)  # 432 points
+_MUTATIONS = (0, 20)
+_SHARED = tuple(name for name in ACTIVATIONS if ActivationFunctionSet().is_valid(name))
+
+
+def networks(effort: Effort) -> Section:
+    """Time random genomes of both populations, as they begin and with hidden nodes."""
+    rows: list[Row] = [
+        row for role in _ENDS for mutations in _MUTATIONS for row in [_measured(role, mutations, effort)]
+    ]
+    table = Table(
+        f"Networks at {np.prod(_GRID)} points, us a network",
+        ("genomes", "nodes", "compiled once", "evaluated", "neat-python", "times neat-python"),
+        rows,
+        f"The same {effort.designs} genomes, of activations that both have, and with outputs that agree. "
+        "neat-python's FeedForwardNetwork, which is asked for one point at a time, is made beforehand too; "
+        "compiling is what a genome costs here before its first point. CPU time.",
+    )
+    return Section("CPPNs against those of neat-python", (table,))
+
+
+def _measured(role: str, mutations: int, effort: Effort) -> tuple[str | float, ...]:
+    inputs, outputs = _ENDS[role]
+    pool = GenePool(
+        RandomSearch(activations=_SHARED), NO_SELECTION, inputs, outputs, np.random.default_rng(_SEED)
+    )
+    genomes = RandomSearchRun(pool, effort.designs, mutations).ask()
+    points = _points(inputs)
+    ours = [pool.express(genome) for genome in genomes]
+    theirs = [neat.nn.FeedForwardNetwork.create(genome, pool.config) for genome in genomes]
+    _compare(ours, theirs, points)
+    actions: dict[str, Action] = {
+        "compiled": lambda: [pool.express(genome) for genome in genomes],
+        "evaluated": lambda: [network(points) for network in ours],
+        "neat-python": lambda: [_activated(network, points) for network in theirs],
+    }
+    taken = {name: 1e6 * time / len(genomes) for name, time in interleaved(actions, effort).items()}
+    return (
+        f"{role}, {f'up to {mutations} mutations' if mutations else 'as they begin'}",
+        float(np.mean([len(genome.nodes) for genome in genomes])),
+        taken["compiled"],
+        taken["evaluated"],
+        taken["neat-python"],
+        taken["neat-python"] / taken["evaluated"],
+    )
+
+
+def _points(inputs: int) -> NDArray[np.float64]:
+    """Return indices of voxels, and what a controller sees beside them: the code of their material."""
+    grid = np.stack(np.meshgrid(*(np.arange(n, dtype=np.float64) for n in _GRID), indexing="ij"), axis=-1)
+    points = grid.reshape(-1, 3)
+    return np.hstack([points, np.full((len(points), inputs - 3), 3.0)])
+
+
+def _activated(network: Any, points: NDArray[np.float64]) -> list[list[float]]:
+    return [network.activate(point) for point in points.tolist()]
+
+
+def _compare(ours: Sequence[CppnNetwork], theirs: Sequence[Any], points: NDArray[np.float64]) -> None:
+    for mine, other in zip(ours, theirs, strict=True):
+        if not np.allclose(mine(points), _activated(other, points), rtol=1e-9, atol=1e-9):
+            raise SectionError("a network and neat-python's disagree, so their times say nothing")

@@ -1,0 +1,92 @@
+"""How times are taken: medians of rounds in which all that is compared has its turn."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Callable, Mapping
+from typing import TypeAlias, TypeVar
+
+import attrs
+
+__all__ = ["FULL", "QUICK", "Action", "Clock", "Effort", "cores_used", "interleaved"]
+
+K = TypeVar("K")
+
+Action: TypeAlias = Callable[[], object]
+Clock: TypeAlias = Callable[[], float]
+
+
+@attrs.frozen
+class Effort:
+    """How much is measured.
+
+    Attributes:
+        rounds: Of which medians are taken.
+        shortest: Time that an action is given in a round at least, s.
+        designs: Random bodies, networks and the like.
+        generations: Of a population that evolves on its own.
+        run: Settings of whole runs that make them shorter.
+        run_rounds: Of whole runs.
+    """
+
+    rounds: int
+    shortest: float
+    designs: int
+    generations: int
+    run: tuple[str, ...]
+    run_rounds: int
+
+
+FULL = Effort(rounds=9, shortest=0.02, designs=25, generations=200, run=(), run_rounds=2)
+
+QUICK = Effort(
+    rounds=3,
+    shortest=0.0,
+    designs=4,
+    generations=10,
+    run=("run.generations=2", "populations.morphology.size=10", "populations.controller.size=10"),
+    run_rounds=1,
+)
+
+
+def interleaved(
+    actions: Mapping[K, Action], effort: Effort, clock: Clock = time.thread_time
+) -> dict[K, float]:
+    """Return the median time of each action, s.
+
+    Each is done once to warm up, and then once a round (or as often as the shortest time asks for), one after
+    the other: what disturbs the machine for a while disturbs all of them.
+
+    Args:
+        actions: What is compared.
+        effort: How many rounds, and how long each action goes on in one.
+        clock: CPU time of this thread, or wall clock for what works in several.
+    """
+    times = {key: _repetitions(action, effort.shortest, clock) for key, action in actions.items()}
+    taken: dict[K, list[float]] = {key: [] for key in actions}
+    for _ in range(effort.rounds):
+        for key, action in actions.items():
+            taken[key].append(_mean(action, times[key], clock))
+    return {key: statistics.median(values) for key, values in taken.items()}
+
+
+def cores_used(action: Action) -> float:
+    """Return the CPU time of this process over the wall clock, while it does something."""
+    began, cpu_began = time.perf_counter(), time.process_time()
+    action()
+    return (time.process_time() - cpu_began) / (time.perf_counter() - began)
+
+
+def _repetitions(action: Action, shortest: float, clock: Clock) -> int:
+    _mean(action, 1, clock)
+    once = _mean(action, 1, clock)
+    return max(1, math.ceil(shortest / once)) if once > 0.0 else 1
+
+
+def _mean(action: Action, times: int, clock: Clock) -> float:
+    started = clock()
+    for _ in range(times):
+        action()
+    return (clock() - started) / times
