@@ -7,6 +7,7 @@
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
+static const size_t LARGEST_SPARE = (size_t)1 << 26;       /* bytes; asking for more takes little of the time it is used */
 static const size_t LINE = 64;                             /* bytes of the processor's cache, at most */
 
 /* ---- the cells -------------------------------------------------------------------------------------------- */
@@ -105,7 +106,10 @@ int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool 
 /* Those after the box too: a tile's upper ends may lie there. */
 static int64_t slots_in_all(const struct body *body)
 {
-    return body->n_tiles * TILE + body->step[2];
+    int64_t farthest = 1;
+    for (int axis = 0; axis < 3; axis++)
+        if (body->census.length[axis] > 1) farthest = body->step[axis];
+    return body->n_tiles * TILE + farthest;
 }
 
 static int64_t slot_of(const struct body *body, const struct cursor *cursor)
@@ -405,6 +409,10 @@ struct body *body_take(const vox_model *model)
 
 void body_return(const vox_model *model, struct body *body)
 {
+    if (body && body->memory_size > LARGEST_SPARE) {
+        body_destroy(body);
+        return;
+    }
     for (int i = 0; i < MOST_SPARES && body; i++)
         body = atomic_exchange(&model->spares->bodies[i], body);
     body_destroy(body);

@@ -11,7 +11,7 @@ from cffi import FFI
 HERE = Path(__file__).parent  # relative to the project's root, as setuptools wants its sources
 SOURCES = tuple(sorted(path.name for path in HERE.glob("*.c")))
 # No contraction to fused multiply-adds: results would depend on the compiler's choice of them.
-FLAGS = ("-std=c11", "-O3", "-fno-tree-pre", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
+FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 SANITIZE_FLAGS = (
     *("-O1", "-g", "-fno-omit-frame-pointer"),
     *("-fsanitize=address,undefined", "-fno-sanitize-recover=all"),
@@ -44,7 +44,7 @@ def builder() -> FFI:
         "evoframe_libvox._vox",
         PREAMBLE,
         sources=[str(HERE / name) for name in SOURCES],
-        depends=[str(HERE / name) for name in ("internal.h", "include/vox.h")],
+        depends=[str(path) for path in (*HERE.glob("*.h"), HERE / "include" / "vox.h")],
         include_dirs=[str(HERE / "include")],
         extra_compile_args=[*FLAGS, *(SANITIZE_FLAGS if sanitize else ())] if unix else [],
         extra_link_args=["-fsanitize=address,undefined"] if sanitize else [],

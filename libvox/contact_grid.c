@@ -4,6 +4,7 @@
 
 #include "internal.h"
 
+static const double ROUNDING = 1e-12;
 static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body that is spread widely gets wider cubes */
 
 enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
@@ -59,7 +60,7 @@ static struct span span_of(const struct body *body)
 static void choose_cubes(struct grid *grid, const struct span *span, double reach)
 {
     double cubes;
-    grid->edge = reach;
+    grid->edge = reach * (1.0 + ROUNDING);
     do {
         cubes = 1.0;
         for (int axis = 0; axis < 3; axis++) {

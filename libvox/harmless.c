@@ -2,10 +2,35 @@
 #include "internal.h"
 
 static const double MARGIN = 1.01;      /* for roundings, and for frames that are not quite unit quaternions */
-static const double FARTHEST_TURN = 6.3; /* rad, of the end of a bond */
+static const double FARTHEST_TURN = 6.3; /* rad, of the end of a bond, if no voxel is turned far */
+static const double LEAST_COSINE = 0.75; /* of half the angle by which a voxel is turned, for that */
+static const double SHORTEST = 1e-150;   /* s; the square of a time step must not vanish */
+static const double WILDEST = 1e200;     /* J, of a spin: far from overflowing */
 
-/* Most voxels that one is listed with. */
-static int64_t most_contacts(const struct body *body)
+/* Whether the step damps all spins or leaves them as they are. */
+static bool spins_do_not_grow(const struct body *body)
+{
+    const vox_model *model = body->model;
+    for (int32_t i = 0; i < model->n_substances; i++)
+        if (!(model->substances[i].slow_spin_rate * body->census.dt <= 2.0)) return false;
+    return true;
+}
+
+/* Whether no bond can look turned by nearly a whole turn, where rotation vectors have no bound. */
+static bool no_voxel_is_wild(const struct body *body)
+{
+    const struct voxels *v = &body->voxels;
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        const struct vec spin = vec_at(v->spin, slot);
+        if (!(v->orientation.w[slot] >= LEAST_COSINE)) return false;
+        if (!(vec_dot(spin, spin) * v->turnability[slot] <= WILDEST)) return false;
+    }
+    return true;
+}
+
+/* Most voxels that one is listed with; counts them where those that it touches are counted too. */
+static int64_t most_contacts(struct body *body)
 {
     const struct pairs *pairs = &body->contacts.now;
     int64_t most = 0;
@@ -19,12 +44,13 @@ static int64_t most_contacts(const struct body *body)
     return most;
 }
 
-bool next_step_is_harmless(const struct body *body)
+bool next_step_is_harmless(struct body *body)
 {
     const vox_model *model = body->model;
     const struct vox_settings *s = &model->settings;
     if (s->floor || s->fluid_drag > 0.0 || s->contact_damping > 0.0 || s->contact_friction) return false;
     const double edge = s->voxel_size, dt = body->census.dt;
+    if (!(dt >= SHORTEST) || !spins_do_not_grow(body) || !no_voxel_is_wild(body)) return false;
     /* a bond, as it is and as it was, is stretched by less than this, in edges */
     const double stretch = 1.0 + (2.0 * body->farthest + model->largest_size) / edge;
     /* what moves a voxel by an edge in a step, as a share of what a bond does that is stretched by an edge */

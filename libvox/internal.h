@@ -247,12 +247,13 @@ struct voxels {
     double *mobile;           /* 0 if all its degrees of freedom are held, else 1 */
     uint8_t *substance;       /* index */
     uint8_t *fixed;           /* degrees of freedom that it has not */
-    int32_t *touching;        /* voxels that it touches in this step, if they are damped or rub */
+    int32_t *touching;        /* scratch: voxels that it touches in this step, if they are damped or rub */
 };
 
 /* The numbers with which struct coupling begins: all that a bond's law needs. */
 #define N_COEFFICIENTS ((int)(offsetof(struct coupling, fastest) / sizeof(double)))
 #define MOST_COEFFICIENTS 17
+_Static_assert(N_COEFFICIENTS == MOST_COEFFICIENTS, "a bond's law needs other numbers than those that are kept");
 
 /* The bonds along one axis. Arrays over slots: that of a bond's lower end, the bond pointing from it along +axis. */
 struct bonds {
@@ -296,8 +297,8 @@ struct grid {
 /* The last search along bonds. */
 struct search {
     int32_t from;          /* slot; -1 before the first */
-    int32_t number;        /* counts the searches */
-    int32_t *reached;      /* [slots] number of the last search that came here */
+    int64_t number;        /* counts the searches */
+    int64_t *reached;      /* [slots] number of the last search that came here */
     int32_t *queue;        /* [slots] */
 };
 
@@ -456,7 +457,7 @@ extern const struct kernel generic_kernel, avx2_kernel, avx512_kernel;
 const struct kernel *kernel_of(int32_t number);
 
 /* Where the compiler can be told the instructions of a part of a file. */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#if defined(__x86_64__) && !defined(_WIN32) && !defined(__clang__) && defined(__GNUC__) && __GNUC__ >= 8
 #define VOX_X86_KERNELS
 #endif
 
@@ -529,7 +530,7 @@ void floor_apply(struct body *body, int64_t slot);
 /* harmless.c */
 
 /* Whether the next step, the list of its contacts being made, cannot lead a body to what counts as diverged. */
-bool next_step_is_harmless(const struct body *body);
+bool next_step_is_harmless(struct body *body);
 
 /* sample.c */
 

@@ -1,4 +1,6 @@
 /* The fast kernel with AVX2 instructions, where compiler and processor know them. */
+#include "for_vectors.h" /* first: what it says holds for all that follows */
+
 #include "internal.h"
 
 #ifdef VOX_X86_KERNELS

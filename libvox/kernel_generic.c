@@ -1,4 +1,6 @@
 /* The fast kernel with the instructions that every processor of the target has. */
+#include "for_vectors.h" /* first: what it says holds for all that follows */
+
 #define VECTOR(name) generic_##name
 
 #include "vector_kernel.h"

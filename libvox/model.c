@@ -225,7 +225,7 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     const struct vox_settings *s = &model->settings;
     const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);
     const enum vox_status built =
-        vicinity_create(&model->vicinity, hops, contacts_reach(model) / s->voxel_size + 2.0 * STRAYED);
+        vicinity_create(&model->vicinity, hops, (contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
     if (built != VOX_OK) return built;
     return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }

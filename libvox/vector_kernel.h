@@ -7,6 +7,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "for_vectors.h"
 #include "internal.h"
 #include "lanes.h"
 
@@ -197,14 +198,15 @@ IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict 
     return far;
 }
 
-/* Length of the rotation vector of a unit quaternion over that of its vector part: within 5.6 degrees the chord counts
- * as the arc, as in the engine. */
+/* Length of a rotation vector over that of its quaternion's vector part, as in bond.c: within 5.6 degrees the chord counts
+ * as the arc, and a cosine beyond 1 or -1, of a quaternion that is not quite unit, as no rotation. */
 IN_LOOP double arc_ratio(double cosine, bool far)
 {
     const double chord = choose(cosine >= 1.0, 0.0, 2.0 * inverse_root_of_half(1.0 - cosine));
     if (!far) return chord;
-    const double w = choose(cosine > 1.0, 1.0, cosine);
-    return choose(w > COSINE_OF_SMALL_ROTATION, chord, 2.0 * arccosine(w) / sqrt(1.0 - w * w));
+    const double sine2 = 1.0 - cosine * cosine;
+    const double arc = choose(sine2 <= 0.0, 0.0, 2.0 * arccosine(cosine) / sqrt(sine2));
+    return choose(cosine > COSINE_OF_SMALL_ROTATION, chord, arc);
 }
 
 /* ---- what bonds do ---------------------------------------------------------------------------------------- */
@@ -296,7 +298,7 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const st
     double *restrict upper_x = bonds->upper.x + base, *restrict upper_y = bonds->upper.y + base;
     double *restrict upper_z = bonds->upper.z + base;
     int64_t overstrained = 0;
-#pragma GCC ivdep
+    NO_LANE_DEPENDS_ON_ANOTHER
     for (int64_t i = 0; i < TILE; i++) {
         const struct coupling c = coupling ? *coupling : coupling_in(bonds, base + i);
         const struct vec p = {sight->stretch[0][i] - sight->rest[i], sight->stretch[1][i], sight->stretch[2][i]};
@@ -417,6 +419,7 @@ IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupl
     struct loads loads;
     bool fine = true;
     for (int64_t base = 0; base < body->n_slots; base += TILE) {
+        if (!body->tile_used[base / TILE]) continue;
         find_frames(&body->voxels, base, &frames);
         memset(&loads, 0, sizeof loads.force_lower + sizeof loads.moment_lower);
         fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most, &frames, &loads);
@@ -460,7 +463,7 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
     const double *restrict mobility = v->mobility + base, *restrict mobile = v->mobile + base;
     const double *restrict drag_rate = v->drag_rate + base, *restrict weight = v->weight + base;
     int64_t lost = 0;
-#pragma GCC ivdep
+    NO_LANE_DEPENDS_ON_ANOTHER
     for (int64_t i = 0; i < TILE; i++) {
         const bool moves = mobile[i] != 0.0;
         const struct vec last = {mx[i], my[i], mz[i]}, bare = {fx[i], fy[i], fz[i]};
@@ -505,7 +508,7 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
     const double *restrict kept = v->spin_kept + base, *restrict turnability = v->turnability + base;
     const double *restrict mobile = v->mobile + base;
     int64_t lost = 0;
-#pragma GCC ivdep
+    NO_LANE_DEPENDS_ON_ANOTHER
     for (int64_t i = 0; i < TILE; i++) {
         const bool moves = mobile[i] != 0.0;
         const struct vec spin = {kept[i] * (sx[i] + dt * tx[i]), kept[i] * (sy[i] + dt * ty[i]),
@@ -530,11 +533,11 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
     return lost;
 }
 
-/* Lets the sizes of a tile's voxels follow the actuation, as in motion.c. */
-static void size_tile(const struct voxels *v, int64_t base, const struct actuation *actuation)
+/* Lets the sizes of a tile's voxels follow the actuation, of which `swing` and `sway` are sine and cosine, as in
+ * motion.c. */
+static void size_tile(const struct voxels *v, int64_t base, const struct actuation *actuation, double swing, double sway)
 {
     const double edge = actuation->edge, rest = actuation->rest, gain = actuation->gain;
-    const double swing = sine(TWO_PI * actuation->cycles), sway = cosine(TWO_PI * actuation->cycles);
     const double *restrict amplitude = v->amplitude + base;
     const double *restrict phase_sine = v->phase_sine + base, *restrict phase_cosine = v->phase_cosine + base;
     double *restrict size = v->size + base;
@@ -578,6 +581,7 @@ static double raised(double number, const double *squares)
 static bool VECTOR(voxels_advance)(struct body *body)
 {
     const struct actuation actuation = actuation_at(body->model, body->time);
+    const double swing = sine(TWO_PI * actuation.cycles), sway = cosine(TWO_PI * actuation.cycles);
     struct extremes extremes = {{0.0}, {0.0}};
     int64_t lost = 0;
     body->top_speed = 0.0;
@@ -585,7 +589,7 @@ static bool VECTOR(voxels_advance)(struct body *body)
     for (int64_t tile = 0; tile < body->n_tiles; tile++) {
         if (!body->tile_used[tile]) continue;
         lost += advance_tile(body, tile * TILE, &extremes);
-        size_tile(&body->voxels, tile * TILE, &actuation);
+        size_tile(&body->voxels, tile * TILE, &actuation, swing, sway);
     }
     body->top_speed = raised(body->top_speed, extremes.speed2);
     body->farthest = raised(body->farthest, extremes.way2);

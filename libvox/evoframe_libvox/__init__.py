@@ -2,7 +2,7 @@
 
 Arrays over a canvas are indexed ``[x, y, z]``. Units are metre, second, kilogram, pascal and degree; phases
 are in cycles. The solver itself is the C library in ``libvox/``: it checks the values of all arguments,
-releases the GIL while it works, and keeps no state, so threads may share a model.
+releases the GIL while it works, and keeps no state but memory to be used again, so threads may share a model.
 """
 
 import itertools

@@ -129,6 +129,69 @@ def test_a_body_that_diverges_in_its_last_step_has_diverged(
     assert np.isfinite(result.tracks["tip"]).all()
 
 
+@pytest.mark.parametrize("kernel", [KERNELS[0], KERNELS[-1]])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"slow_damping": 0.4},
+        {"slow_damping": 3.0},
+        {"bond_damping": 3.0},
+        {"bond_damping": 12.0, "slow_damping": 0.0},
+        {"largest_strain": 0.05},
+        {"gravity": -20.0, "largest_distance": 0.1},
+    ],
+    ids=str,
+)
+def test_what_diverges_in_the_last_step_is_not_left_out(
+    small_model: ModelMaker, kernel: str, changes: dict[str, float]
+) -> None:
+    """Spins that slow damping raises, dampers too strong for the step, and limits that are close."""
+    rng = np.random.default_rng(1)
+    body, phase = np.full((1, 3, 3, 2), 3, np.uint8), rng.uniform(-1.0, 1.0, (1, 3, 3, 2))
+    long = small_model((3, 3, 2), duration=4.0, **changes)
+    [diverged] = long.simulate(body, phase, [0], []).diverged_step.tolist()
+    assert diverged > 1
+    dt = long.time_steps(body)[0][0]
+    for whole_body in (False, True):
+        settings = attrs.evolve(long.settings, duration=(diverged - 0.5) * dt)
+        brief = Model(
+            long.canvas,
+            long.palette,
+            settings,
+            np.zeros(long.canvas, np.uint8),
+            kernel=kernel,
+            whole_body=whole_body,
+        )
+        assert brief.time_steps(body)[1].tolist() == [diverged]
+        assert brief.simulate(body, phase, [0], []).diverged_step.tolist() == [diverged]
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_bonds_that_turn_by_more_than_half_a_turn(small_model: ModelMaker, seed: int) -> None:
+    """There rotations come to quaternions of cosine -1, which count as none; no kernel may make a NaN."""
+    canvas = (2, 1, 3)
+    settings = small_model(
+        canvas,
+        period=0.02,
+        ramp=0.02,
+        duration=1.0,
+        temperature_amplitude=14.5,
+        gravity=-9.81,
+        time_step_fraction=1.0,
+        bond_damping=1.5,
+        slow_damping=0.25,
+        self_collision=False,
+        largest_strain=10.0,
+    ).settings
+    fixed = np.array([0, 0, 7, 63, 7, 63], np.uint8).reshape(canvas)
+    phase = np.random.default_rng(seed).uniform(-1.0, 1.0, (1, *canvas))
+    for kernel in KERNELS:
+        model = Model(canvas, {1: Material(5e6, 0.35, 1e6, 0.01)}, settings, fixed, kernel=kernel)
+        result = model.simulate(np.ones((1, *canvas), np.uint8), phase, [280], ["voxels"])
+        assert result.diverged_step.tolist() == [0]
+        assert np.isfinite(result.tracks["voxels"]).all()
+
+
 @given(cases)
 def test_a_body_does_not_remember_the_one_before(small_settings: SettingsMaker, case: Case) -> None:
     """A batch in which bodies and controllers alternate, against each on its own in a new model."""
