@@ -1,8 +1,8 @@
-"""Only what the C extension needs; everything else stands in pyproject.toml."""
+"""Only what the C extensions need; everything else stands in pyproject.toml."""
 
 from setuptools import setup
 
 setup(
-    cffi_modules=["libcppn/build_ffi.py:ffibuilder", "libvox/build_ffi.py:ffibuilder"],
+    cffi_modules=["extensions.py:libcppn", "extensions.py:libvox"],
     options={"bdist_wheel": {"py_limited_api": "cp311"}},
 )

@@ -18,7 +18,7 @@ __all__ = ["BUSY", "compiler", "cores", "load", "machine"]
 BUSY = 0.3
 """Load from which other work may disturb the figures."""
 
-_BUILD = Path(__file__).parent.parent / "libvox" / "build_ffi.py"
+_BUILD = Path(__file__).parent.parent / "extensions.py"
 
 
 def machine() -> dict[str, str]:

@@ -99,7 +99,7 @@ enum vox_status body_census(const vox_model *model, const uint8_t *material, str
 
 int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards)
 {
-    if (body->place[slot][axis] == (upwards ? body->census.length[axis] - 1 : 0)) return -1;
+    if (body->coordinates[slot][axis] == (upwards ? body->census.length[axis] - 1 : 0)) return -1;
     return upwards ? slot + body->step[axis] : slot - body->step[axis];
 }
 
@@ -189,7 +189,7 @@ static void lay_out(struct body *body, struct arena *arena)
     body->slots = take(arena, body->census.n_voxels, sizeof *body->slots);
     body->cells = take(arena, body->census.n_voxels, sizeof *body->cells);
     body->partly = take(arena, body->census.n_voxels, sizeof *body->partly);
-    body->place = take(arena, n, sizeof *body->place);
+    body->coordinates = take(arena, n, sizeof *body->coordinates);
     body->tile_used = take(arena, body->n_tiles, sizeof *body->tile_used);
     body->occupied = take(arena, n, sizeof *body->occupied);
     body->bonded = take(arena, n, sizeof *body->bonded);
@@ -246,7 +246,7 @@ static void place_starts(struct body *body)
         const double y = edge * ((double)(from[1] + row % length[1]) + 0.5);
         const double z = edge * ((double)(from[2] + row / length[1]) + 0.5);
         for (int64_t x = 0; x < length[0] && row * length[0] + x < slots_in_all(body); x++) {
-            int32_t *place = body->place[row * length[0] + x];
+            int32_t *place = body->coordinates[row * length[0] + x];
             vec_put(start, row * length[0] + x, (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
             place[0] = (int32_t)x;
             place[1] = (int32_t)(row % length[1]);

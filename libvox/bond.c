@@ -1,15 +1,6 @@
 /* The bond law: a beam between two voxels, in one of two frames, with a damper (sections 5 and 6). */
 #include "internal.h"
 
-/* Limits of the frames; a bond leaves the small frame later than it returns to it. */
-static const double SMALL_COSINE = 0.9999625024343469; /* cos(0.01732 / 2) */
-static const double LARGE_COSINE = 0.9999546280051071; /* cos(1.1 * 0.01732 / 2) */
-static const double SMALL_TURN = 0.05, LARGE_TURN = 0.055;
-static const double SMALL_EXTENSION = 1.30, LARGE_EXTENSION = 1.43;
-
-static const double SLOPE_OF_SMALL_TURN = 0.01732;
-static const double COSINE_OF_SMALL_ROTATION = 0.9988;
-
 /* A vector seen in axes of which the bond's own is the first, and back. */
 static struct vec axis_to_x(enum axis axis, struct vec v)
 {

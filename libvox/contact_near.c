@@ -114,7 +114,7 @@ static bool is_joined_around(const struct body *body, struct search *search, str
 
 static void set_offset(const struct body *body, struct pair pair, int32_t by[3])
 {
-    const int32_t *from = body->place[pair.first], *to = body->place[pair.second];
+    const int32_t *from = body->coordinates[pair.first], *to = body->coordinates[pair.second];
     for (int axis = 0; axis < 3; axis++) by[axis] = to[axis] - from[axis];
 }
 

@@ -88,6 +88,18 @@ static inline struct vec quat_rotate(struct quat q, struct vec v)
 #define SMALLEST_SCALE 0.1
 #define LARGEST_SCALE 3.0
 
+/* Limits of a bond's two frames (section 5); it leaves the small one later than it returns to it. */
+#define SMALL_COSINE 0.9999625024343469 /* cos(0.01732 / 2) */
+#define LARGE_COSINE 0.9999546280051071 /* cos(1.1 * 0.01732 / 2) */
+#define SMALL_TURN 0.05
+#define LARGE_TURN 0.055
+#define SMALL_EXTENSION 1.30
+#define LARGE_EXTENSION 1.43
+
+/* Up to these the engine's formulas for small angles hold (section 5). */
+#define SLOPE_OF_SMALL_TURN 0.01732
+#define COSINE_OF_SMALL_ROTATION 0.9988
+
 /* ---- constants of a model --------------------------------------------------------------------------------- */
 
 /* A voxel of one material (sections 1, 4, 6 and 9). */
@@ -347,7 +359,7 @@ struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
-    int32_t (*place)[3]; /* of each slot in the box */
+    int32_t (*coordinates)[3]; /* of each slot in the box */
     int64_t step[3];    /* slots from a cell to the next along each axis */
     int32_t *slots;     /* [n_voxels] of the voxels, ascending */
     int32_t *cells;     /* [n_voxels] of the canvas, likewise */

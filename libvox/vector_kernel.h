@@ -11,16 +11,6 @@
 #include "internal.h"
 #include "lanes.h"
 
-/* Limits of the frames, as in bond.c. */
-#define SMALL_COSINE 0.9999625024343469
-#define LARGE_COSINE 0.9999546280051071
-#define SMALL_TURN 0.05
-#define LARGE_TURN 0.055
-#define SMALL_EXTENSION 1.30
-#define LARGE_EXTENSION 1.43
-#define SLOPE_OF_SMALL_TURN 0.01732
-#define COSINE_OF_SMALL_ROTATION 0.9988
-
 /* Aligned for any vector. */
 #ifdef __GNUC__
 #define IN_LINES __attribute__((aligned(64)))

@@ -24,12 +24,12 @@ for library in "${libraries[@]}"; do
     sources=("$root/tests/$library/embed.c" "$root/$library"/*.c)
     "$compiler" "${flags[@]}" -I "$root/$library/include" "${sources[@]}" -o "$place/embed" -lm
     "$place/embed"
-    EVOFRAME_SANITIZE=1 "$python" - "$root/$library" "$place" <<'END'
+    EVOFRAME_SANITIZE=1 "$python" - "$root" "$library" "$place" <<'END'
 import runpy
 import sys
 
-library, place = sys.argv[1:]
-runpy.run_path(f"{library}/build_ffi.py")["ffibuilder"].compile(tmpdir=place)
+root, library, place = sys.argv[1:]
+runpy.run_path(f"{root}/extensions.py")[library].compile(tmpdir=place)
 END
     cp "$root/$library/evoframe_$library"/*.py "$place/evoframe_$library/"
 done

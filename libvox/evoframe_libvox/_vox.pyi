@@ -1,4 +1,4 @@
-# The extension that libvox/build_ffi.py makes of libvox/include/vox.h.
+# The extension that extensions.py makes of libvox/include/vox.h.
 from typing import Any
 
 ffi: Any

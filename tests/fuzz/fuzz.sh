@@ -111,7 +111,7 @@ build_runtime() {
 build_extension() {
     CC=$clang LDSHARED="$clang -shared" EVOFRAME_SANITIZE=1 "$python" -c '
 import runpy, sys
-runpy.run_path(sys.argv[1] + "/libvox/build_ffi.py")["ffibuilder"].compile(tmpdir=sys.argv[2])
+runpy.run_path(sys.argv[1] + "/extensions.py")["libvox"].compile(tmpdir=sys.argv[2])
 ' "$root" "$place" &>"$place/extension.log" || { cat "$place/extension.log" >&2; return 1; }
     cp "$root"/libvox/evoframe_libvox/*.py "$place/evoframe_libvox/"
 }

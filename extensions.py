@@ -1,4 +1,4 @@
-"""Builds the extension ``evoframe_libvox._vox``; setuptools runs this through ``cffi_modules``.
+"""Builds the extensions of the C libraries; setuptools runs this through ``cffi_modules``.
 
 ``EVOFRAME_SANITIZE=1`` builds with the address and undefined-behaviour sanitizers, warnings being errors.
 """
@@ -9,7 +9,6 @@ from pathlib import Path
 from cffi import FFI
 
 HERE = Path(__file__).parent  # relative to the project's root, as setuptools wants its sources
-SOURCES = tuple(sorted(path.name for path in HERE.glob("*.c")))
 # No contraction to fused multiply-adds: results would depend on the compiler's choice of them.
 FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 SANITIZE_FLAGS = (
@@ -18,7 +17,7 @@ SANITIZE_FLAGS = (
     *("-Wall", "-Wextra", "-Wconversion", "-Werror"),
 )
 PREAMBLE = """
-#include "vox.h"
+#include "{header}"
 #ifdef __GNUC__ /* what follows is cffi's, not ours */
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wsign-conversion"
@@ -28,24 +27,26 @@ PREAMBLE = """
 """
 
 
-def declarations() -> str:
-    """Return the header without its directive lines, which is what cffi reads."""
-    lines = (HERE / "include" / "vox.h").read_text(encoding="utf-8").splitlines()
+def declarations(header: Path) -> str:
+    """Return a header without its directive lines, which is what cffi reads."""
+    lines = header.read_text(encoding="utf-8").splitlines()
     return "\n".join(line for line in lines if not line.startswith("#"))
 
 
-def builder() -> FFI:
-    """Return the builder of the extension."""
+def extension(folder: str, name: str) -> FFI:
+    """Return the builder of the extension of the library in a folder, of which *name*.h is the interface."""
     sanitize = os.environ.get("EVOFRAME_SANITIZE") == "1"
     unix = os.name != "nt"
+    library = HERE / folder
+    header = library / "include" / f"{name}.h"
     ffi = FFI()
-    ffi.cdef(declarations())
+    ffi.cdef(declarations(header))
     ffi.set_source(
-        "evoframe_libvox._vox",
-        PREAMBLE,
-        sources=[str(HERE / name) for name in SOURCES],
-        depends=[str(path) for path in (*HERE.glob("*.h"), HERE / "include" / "vox.h")],
-        include_dirs=[str(HERE / "include")],
+        f"evoframe_{folder}._{name}",
+        PREAMBLE.replace("{header}", header.name),
+        sources=[str(path) for path in sorted(library.glob("*.c"))],
+        depends=[str(path) for path in (*library.glob("*.h"), header)],
+        include_dirs=[str(header.parent)],
         extra_compile_args=[*FLAGS, *(SANITIZE_FLAGS if sanitize else ())] if unix else [],
         extra_link_args=["-fsanitize=address,undefined"] if sanitize else [],
         libraries=["m"] if unix else [],
@@ -53,4 +54,5 @@ def builder() -> FFI:
     return ffi
 
 
-ffibuilder = builder()
+libcppn = extension("libcppn", "cppn")
+libvox = extension("libvox", "vox")
