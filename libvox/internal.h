@@ -390,7 +390,7 @@ bool scalar_voxels_advance(struct body *body);
 /* One way to compute what takes nearly all the time. */
 struct kernel {
     const char *name;
-    bool (*usable)(void); /* whether this processor can */
+    bool (*usable)(void); /* whether this processor can; NULL if every one can */
     /* Adds the forces and torques of all bonds to their voxels. `per_second` is 1/dt, or 0 on the first step, which has
      * no rates yet. False if a bond has diverged. */
     bool (*bonds_apply)(struct body *body, double per_second);

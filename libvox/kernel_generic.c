@@ -5,9 +5,4 @@
 
 #include "vector_kernel.h"
 
-static bool generic_usable(void)
-{
-    return true;
-}
-
-const struct kernel generic_kernel = VECTOR_KERNEL("generic");
+const struct kernel generic_kernel = VECTOR_KERNEL("generic", NULL);

@@ -1,12 +1,7 @@
 /* The kernels, and which of them this processor can use. */
 #include "internal.h"
 
-static bool always(void)
-{
-    return true;
-}
-
-static const struct kernel scalar_kernel = {"scalar", always, scalar_bonds_apply, scalar_voxels_advance};
+static const struct kernel scalar_kernel = {"scalar", NULL, scalar_bonds_apply, scalar_voxels_advance};
 
 static const struct kernel *const kernels[] = {
     &scalar_kernel,
@@ -19,17 +14,22 @@ static const struct kernel *const kernels[] = {
 
 #define N_KERNELS ((int32_t)(sizeof kernels / sizeof *kernels))
 
+static bool can_use(const struct kernel *kernel)
+{
+    return !kernel->usable || kernel->usable();
+}
+
 const struct kernel *kernel_of(int32_t number)
 {
     if (number < 0 || number > N_KERNELS) return NULL;
-    if (number > 0) return kernels[number - 1]->usable() ? kernels[number - 1] : NULL;
+    if (number > 0) return can_use(kernels[number - 1]) ? kernels[number - 1] : NULL;
     int32_t last = N_KERNELS - 1;
-    while (!kernels[last]->usable()) last--;
+    while (!can_use(kernels[last])) last--;
     return kernels[last];
 }
 
 const char *vox_kernel_name(int32_t number)
 {
     if (number < 1 || number > N_KERNELS) return NULL;
-    return kernels[number - 1]->usable() ? kernels[number - 1]->name : "";
+    return can_use(kernels[number - 1]) ? kernels[number - 1]->name : "";
 }

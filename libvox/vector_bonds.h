@@ -341,24 +341,17 @@ IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
     for (int64_t i = 0; i < TILE; i++) to[i] -= from[i];
 }
 
-IN_LOOP void unload_upper(const struct voxels *v, int64_t base, const struct loads *loads)
+/* Gives what bonds do to their lower or upper ends to the voxels there; a force acts on both, in opposite directions. */
+IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3], const lanes moment[3], bool upper)
 {
-    subtract_lanes(v->force.x + base, loads->force_upper[0]);
-    subtract_lanes(v->force.y + base, loads->force_upper[1]);
-    subtract_lanes(v->force.z + base, loads->force_upper[2]);
-    subtract_lanes(v->torque.x + base, loads->moment_upper[0]);
-    subtract_lanes(v->torque.y + base, loads->moment_upper[1]);
-    subtract_lanes(v->torque.z + base, loads->moment_upper[2]);
-}
-
-IN_LOOP void unload_lower(const struct voxels *v, int64_t base, const struct loads *loads)
-{
-    add_lanes(v->force.x + base, loads->force_lower[0]);
-    add_lanes(v->force.y + base, loads->force_lower[1]);
-    add_lanes(v->force.z + base, loads->force_lower[2]);
-    subtract_lanes(v->torque.x + base, loads->moment_lower[0]);
-    subtract_lanes(v->torque.y + base, loads->moment_lower[1]);
-    subtract_lanes(v->torque.z + base, loads->moment_lower[2]);
+    double *const forces[] = {v->force.x, v->force.y, v->force.z}, *const torques[] = {v->torque.x, v->torque.y, v->torque.z};
+    for (int i = 0; i < 3; i++) {
+        if (upper)
+            subtract_lanes(forces[i] + base, force[i]);
+        else
+            add_lanes(forces[i] + base, force[i]);
+        subtract_lanes(torques[i] + base, moment[i]);
+    }
 }
 
 IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis, int64_t base,
@@ -375,7 +368,7 @@ IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupl
         overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, loads);
     else
         overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, loads);
-    unload_upper(v, base + b->step, loads);
+    unload(v, base + b->step, loads->force_upper, loads->moment_upper, true);
     return overstrained == 0;
 }
 
@@ -394,7 +387,7 @@ IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupl
         fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most, &frames, &loads);
         fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most, &frames, &loads);
         fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most, &frames, &loads);
-        unload_lower(&body->voxels, base, &loads);
+        unload(&body->voxels, base, loads.force_lower, loads.moment_lower, false);
     }
     return fine;
 }

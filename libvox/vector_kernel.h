@@ -24,6 +24,4 @@ typedef double lanes[TILE];
 #include "vector_bonds.h"
 #include "vector_motion.h"
 
-static bool VECTOR(usable)(void);
-
-#define VECTOR_KERNEL(name) {name, VECTOR(usable), VECTOR(bonds_apply), VECTOR(voxels_advance)}
+#define VECTOR_KERNEL(name, usable) {name, usable, VECTOR(bonds_apply), VECTOR(voxels_advance)}
