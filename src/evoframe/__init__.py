@@ -36,6 +36,7 @@ from evoframe.protocols import (
     Simulator,
 )
 from evoframe.resolve import load_config
+from evoframe.resuming import resume
 from evoframe.run import assemble, run
 from evoframe.values import (
     BestPair,
@@ -109,6 +110,7 @@ __all__ = [
     "hookimpl",
     "load_config",
     "load_run",
+    "resume",
     "run",
     "suggestion",
     "verify",

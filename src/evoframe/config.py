@@ -143,6 +143,10 @@ class RunConfig:
             "plugins": unstructure(self.plugins),
         }
 
+    def deciding(self) -> Tree:
+        """Return the tables on which the result depends: all but the executor."""
+        return {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
+
     def simulation(self) -> Tree:
         """Return the tables that say how a design is simulated and scored."""
         return {key: _table(getattr(self, key)) for key in ("simulator", "objective")}

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import sqlite3
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import attrs
 
-from evoframe.champion import FORMAT, champion_from_json, parsed_json
+from evoframe.champion import champion_from_json, parsed_json
+from evoframe.checksums import CHAINED, SINGLE, Checksums
 from evoframe.errors import InputError
+from evoframe.store import CONFIG_FILE, DATABASE_FILE, RUN_FORMAT
 from evoframe.values import Design
 from evoframe.verification import VERIFICATION_FILE, Verification, verification_from_json
 
-__all__ = ["Champion", "Run", "load_run"]
+__all__ = ["Champion", "Run", "has_begun", "load_run"]
+
+_LONGEST_TEXT = 2**26  # bytes; a design or a state of this size is none of ours
 
 
 @attrs.frozen(eq=False)
@@ -69,8 +73,56 @@ class Run:
     @property
     def summary(self) -> dict[str, Any]:
         """The final figures; empty as long as the run is not finished."""
-        rows = {row["key"]: row["value"] for row in self.table("meta") if row["key"] != "format"}
-        return {key: json.loads(value) for key, value in rows.items()}
+        return {key: value for key, value in self._meta.items() if key not in _SETTLED}
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run has come to its end."""
+        return bool(self.summary)
+
+    @property
+    def last_turn(self) -> int | None:
+        """Index of the last turn that is saved; ``None`` if there is none."""
+        rows = self.table("workload")
+        return int(rows[-1]["turn"]) if rows else None
+
+    @property
+    def resumes(self) -> list[dict[str, Any]]:
+        """One row for each time the run was resumed: after which turn, with which differences."""
+        return self.table("resumes")
+
+    @property
+    def configuration(self) -> dict[str, Any]:
+        """The tables that decide the run, as the database has them; must equal those of :attr:`config`."""
+        configuration = self._meta.get("configuration")
+        if not isinstance(configuration, dict):
+            raise InputError(f"{self._database}: meta: has no configuration")
+        return configuration
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What the loop continues from; empty as long as no turn is saved.
+
+        Raises:
+            InputError: The database is damaged.
+        """
+        rows = self.table("state")
+        return {row["part"]: self._json("state", row["part"], row["state"]) for row in rows}
+
+    @property
+    def _meta(self) -> dict[str, Any]:
+        rows = self.table("meta")
+        return {row["key"]: self._json("meta", row["key"], row["value"]) for row in rows}
+
+    @property
+    def _database(self) -> Path:
+        return self.directory / DATABASE_FILE
+
+    def _json(self, table: str, key: str, text: str) -> Any:
+        try:
+            return parsed_json(text)
+        except ValueError as error:
+            raise InputError(f"{self._database}: {table}: {key}: {error}") from error
 
     @property
     def champion(self) -> Champion:
@@ -79,15 +131,20 @@ class Run:
         Raises:
             InputError: There is none yet, or the database is damaged.
         """
-        path = self.directory / "run.db"
-        rows = self.table("best_pairs")
-        if not rows:
-            raise InputError(f"{path}: has no pair with a score yet")
+        document = self.champion_document
+        if document is None:
+            raise InputError(f"{self._database}: has no pair with a score yet")
         try:
-            design, simulation, score = champion_from_json(rows[-1]["document"])
+            design, simulation, score = champion_from_json(document)
         except ValueError as error:
-            raise InputError(f"{path}: best_pairs: {error}") from error
+            raise InputError(f"{self._database}: best_pairs: {error}") from error
         return Champion(score, design, simulation)
+
+    @property
+    def champion_document(self) -> str | None:
+        """The text of champion.json, without its last line end; ``None`` if there is no champion yet."""
+        rows = self.table("best_pairs")
+        return rows[-1]["document"] if rows else None
 
     @property
     def verification(self) -> Verification | None:
@@ -119,14 +176,33 @@ class Run:
         Raises:
             InputError: The database cannot be read, or has no such table.
         """
-        path = self.directory / "run.db"
+        columns, rows = self._read(name)
+        return [dict(zip(columns, row, strict=True)) for row in rows]
+
+    def rows(self, name: str) -> list[tuple[Any, ...]]:
+        """Return the rows of a table as they were saved.
+
+        Raises:
+            InputError: As :meth:`table`.
+        """
+        return self._read(name)[1]
+
+    def _read(self, name: str) -> tuple[list[str], list[tuple[Any, ...]]]:
+        """Return the columns and rows of a table, whose checksum was compared."""
+        path = self._database
         try:
             with contextlib.closing(_open(path)) as database:
-                names = [row["name"] for row in database.execute("SELECT name FROM sqlite_master")]
-                if name not in names:
-                    raise InputError(f"{path}: has no table '{name}'; tables: {', '.join(sorted(names))}")
-                return [dict(row) for row in database.execute(f'SELECT * FROM "{name}"')]  # noqa: S608
-        except sqlite3.Error as error:
+                database.execute("BEGIN")  # rows and checksums of one moment
+                tables = _tables(database)
+                if name not in tables:
+                    known = ", ".join(sorted(tables))
+                    raise InputError(f"{path}: has no table '{name}'; tables: {known}")
+                found = database.execute(f'SELECT * FROM "{name}"')  # noqa: S608
+                columns, rows = [column[0] for column in found.description], found.fetchall()
+                if name in (*CHAINED, *SINGLE):
+                    _compare_checksums(path, name, rows, _checksums(database))
+                return columns, rows
+        except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
             raise InputError(f"{path}: cannot be read: {error}") from error
 
 
@@ -137,23 +213,80 @@ def load_run(directory: str | Path) -> Run:
         InputError: It is no run's directory, or one of another format.
     """
     directory = Path(directory)
-    path = directory / "config.toml"
+    path = directory / CONFIG_FILE
     try:
         config = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{directory}: is no run's directory: {path.name}: {error.strerror}") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid TOML: {error}") from error
+    _refuse_format(directory)
     run = Run(directory, config)
-    formats = [row["value"] for row in run.table("meta") if row["key"] == "format"]
-    if formats != [str(FORMAT)]:
-        raise InputError(f"{directory}: has the format {formats}, but this evoframe reads format {FORMAT}")
+    run.table("meta")
     return run
 
 
+def has_begun(directory: Path) -> bool:
+    """Return whether a run's directory has a database with tables in it: not so after a very early kill.
+
+    Raises:
+        InputError: The database cannot be read.
+    """
+    path = directory / DATABASE_FILE
+    if not path.is_file():
+        return False
+    try:
+        with contextlib.closing(_open(path)) as database:
+            return bool(_tables(database))
+    except sqlite3.Error as error:
+        raise InputError(f"{path}: cannot be read: {error}") from error
+
+
+_SETTLED = ("format", "configuration")  # keys of meta that stand there from the beginning
+
+
+def _refuse_format(directory: Path) -> None:
+    """Look at the format before anything that another format may not have."""
+    path = directory / DATABASE_FILE
+    try:
+        with contextlib.closing(_open(path)) as database:
+            found = [row[0] for row in database.execute("SELECT value FROM meta WHERE key = 'format'")]
+    except sqlite3.Error as error:
+        raise InputError(f"{path}: cannot be read: {error}") from error
+    if found != [str(RUN_FORMAT)]:
+        what = f"the format {found[0]!r}" if found else "no format"
+        raise InputError(
+            f"{directory}: has {what}, but this evoframe reads format {RUN_FORMAT}; read it with the "
+            f"evoframe that wrote it: {CONFIG_FILE} names its version under [provenance]"
+        )
+
+
 def _open(path: Path) -> sqlite3.Connection:
+    """Open a database that may come from anyone: nothing in it is trusted, and nothing is written."""
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
-    database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)
-    database.row_factory = sqlite3.Row
+    database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, isolation_level=None)
+    database.execute("PRAGMA trusted_schema = OFF")
+    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST_TEXT)
+    database.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
     return database
+
+
+def _tables(database: sqlite3.Connection) -> list[str]:
+    """Return the names of all tables: a view or a trigger is none, whatever it is called."""
+    return [row[0] for row in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
+
+
+def _checksums(database: sqlite3.Connection) -> dict[str, str]:
+    return dict(database.execute("SELECT name, checksum FROM checksums").fetchall())
+
+
+def _compare_checksums(
+    path: Path, table: str, rows: Sequence[tuple[Any, ...]], saved: dict[str, str]
+) -> None:
+    """Refuse rows that are not those that were saved."""
+    found = dict(Checksums.of_rows(table, rows)) if rows else {}
+    expected = {name: saved[name] for name in saved if name.partition(":")[0] == table}
+    wrong = sorted(name for name in found.keys() | expected.keys() if found.get(name) != expected.get(name))
+    if wrong:
+        raise InputError(f"{path}: is damaged: {', '.join(wrong)} is not what was saved")

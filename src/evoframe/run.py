@@ -6,35 +6,44 @@ import contextlib
 import functools
 import itertools
 import logging
-import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import attrs
-import numpy as np
 import tomli_w
 
-from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, EvoframeError, InputError, RunError
 from evoframe.evaluation import Evaluator
 from evoframe.exporting import exports
 from evoframe.layers import layers_of
-from evoframe.loading import Run, load_run
+from evoframe.loading import Run, has_begun, load_run
+from evoframe.locking import LOCK_FILE, Lock, locked, released_on_error
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.population import Population
+from evoframe.provenance import provenance
 from evoframe.randomness import stream
 from evoframe.resolve import load_config
-from evoframe.store import Store, write_json
+from evoframe.store import CONFIG_FILE, Store, write_atomically, write_json
 from evoframe.values import Design, Turn
 from evoframe.verification import VERIFICATION_FILE, Verification, can_verify, verify_design
 
 _log = logging.getLogger(__name__)
 
-__all__ = ["Execution", "assemble", "evaluator_of", "keep_verification", "prepare", "run", "verified"]
+__all__ = [
+    "Execution",
+    "assemble",
+    "evaluator_of",
+    "keep_verification",
+    "opened_store",
+    "prepare",
+    "run",
+    "verified",
+    "verify_champion",
+]
 
 
 def run(
@@ -147,7 +156,7 @@ def keep_verification(directory: Path, verification: Verification) -> None:
 
 @attrs.frozen
 class Execution:
-    """A run that is about to begin: all its components have started, and its directory is its own.
+    """A run that is about to begin or to go on: its components have started, and its directory is its own.
 
     Attributes:
         config: What is run.
@@ -174,9 +183,9 @@ class Execution:
         """
         completed = False
         with contextlib.ExitStack() as stack:
+            stack.enter_context(self._naming_what_to_do())
             stack.callback(self._store.close)
             stack.enter_context(self._coevolution)
-            self._store.save_config(self.config.to_toml() + _provenance(self.config))
             observers.tell("evoframe_run_started", config=self.config, directory=self.directory)
             try:
                 completed = _play(self._coevolution, self._store, observers, stop)
@@ -184,26 +193,41 @@ class Execution:
                 observers.tell("evoframe_run_finished", directory=self.directory, completed=completed)
         return completed
 
-    def verify(self) -> Verification | None:
-        """Verify the champion of the completed run, and keep the result beside it.
-
-        Returns:
-            The verification; ``None`` if the simulator offers no variants.
-
-        Raises:
-            RunError: It cannot be done. The run itself is complete and saved.
-        """
-        if not can_verify(self.config.simulator.component):
-            return None
+    @contextlib.contextmanager
+    def _naming_what_to_do(self) -> Iterator[None]:
         try:
-            champion = load_run(self.directory).champion
-            [verification] = verified(self.config, [champion.design], champion.score)
-            keep_verification(self.directory, verification)
-        except Exception as error:
-            cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
-            complete = f"{self.directory}: the run is complete and saved"
-            raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
-        return verification
+            yield
+        except RunError as error:
+            turn = self._coevolution.turn
+            saved = "no turn is saved" if turn < 0 else f"the turns before this are saved in {self.directory}"
+            todo = f"to go on when that is mended: evoframe resume {self.directory}"
+            raise RunError(f"{error}\n  {saved}; {todo}") from error
+
+    def verify(self) -> Verification | None:
+        """Verify the champion of the completed run: see :func:`verify_champion`."""
+        return verify_champion(self.config, self.directory)
+
+
+def verify_champion(config: RunConfig, directory: Path) -> Verification | None:
+    """Verify the champion of a completed run, and keep the result beside it.
+
+    Returns:
+        The verification; ``None`` if the simulator offers no variants.
+
+    Raises:
+        RunError: It cannot be done. The run itself is complete and saved.
+    """
+    if not can_verify(config.simulator.component):
+        return None
+    try:
+        champion = load_run(directory).champion
+        [verification] = verified(config, [champion.design], champion.score)
+        keep_verification(directory, verification)
+    except Exception as error:
+        cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
+        complete = f"{directory}: the run is complete and saved"
+        raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
+    return verification
 
 
 def prepare(config: RunConfig, out: Path | None = None) -> Execution:
@@ -219,14 +243,33 @@ def prepare(config: RunConfig, out: Path | None = None) -> Execution:
         InputError: The directory is not empty, or cannot be made.
     """
     coevolution = assemble(config)
-    export = functools.partial(exports, config.simulator.component)
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
-        store = Store(directory, list(config.populations), config.simulation(), export)
-        return Execution(config, directory, coevolution, store)
+        return Execution(config, directory, coevolution, _new_store(directory, config))
     except BaseException:
         coevolution.close()
         raise
+
+
+def _new_store(directory: Path, config: RunConfig) -> Store:
+    lock = locked(directory)
+    with released_on_error(lock):
+        _refuse_occupied(directory)  # again: another process may have been faster
+        text = config.to_toml() + "\n" + tomli_w.dumps({"provenance": provenance(config)})
+        write_atomically(directory / CONFIG_FILE, text.encode())
+        store = opened_store(directory, config, lock)
+        store.begin(list(config.populations), config.deciding())
+        return store
+
+
+def opened_store(directory: Path, config: RunConfig, lock: Lock) -> Store:
+    """Return the store of a run's directory, whose database is new or has what was saved so far.
+
+    Raises:
+        InputError: It cannot be written.
+    """
+    export = functools.partial(exports, config.simulator.component)
+    return Store.open(directory, config.simulation(), lock, export)
 
 
 def _default_directory(config: RunConfig) -> Path:
@@ -247,12 +290,24 @@ def _default_directory(config: RunConfig) -> Path:
 def _given_directory(directory: Path) -> Path:
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        occupied = any(directory.iterdir())
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
-    if occupied:
-        raise InputError(f"{directory}: is not empty; choose another directory with --out")
+    _refuse_occupied(directory)
     return directory
+
+
+def _refuse_occupied(directory: Path) -> None:
+    try:
+        names = {path.name for path in directory.iterdir()} - {LOCK_FILE}
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+    if CONFIG_FILE in names:
+        finished = has_begun(directory) and load_run(directory).finished
+        what = "holds a finished run" if finished else "holds a run that is not finished"
+        todo = "" if finished else f"; to go on with it: evoframe resume {directory}"
+        raise InputError(f"{directory}: is not empty: it {what}; choose another directory with --out{todo}")
+    if names:
+        raise InputError(f"{directory}: is not empty; choose another directory with --out")
 
 
 def _play(coevolution: Coevolution, store: Store, observers: Observers, stop: Callable[[], bool]) -> bool:
@@ -291,22 +346,3 @@ def _result(coevolution: Coevolution) -> dict[str, Any]:
         },
         "fittest_pair_score": pair.score,
     }
-
-
-def _provenance(config: RunConfig) -> str:
-    """Return the table that says what the run was made with; it is read by people, and by resume."""
-    components = dict(config.components())
-    libraries = {"python": platform.python_version(), "numpy": np.__version__}
-    for chosen in components.values():
-        if hasattr(chosen.component, "provenance"):
-            libraries |= chosen.component.provenance()
-    vectors = np.show_config(mode="dicts").get("SIMD Extensions", {})
-    table = {
-        "evoframe": __version__,
-        "machine": platform.machine(),
-        "vector_extensions": [*vectors.get("baseline", []), *vectors.get("found", [])],
-        "c_library": " ".join(platform.libc_ver()),
-        "libraries": libraries,
-        "components": {key: str(chosen.source) for key, chosen in components.items()},
-    }
-    return "\n" + tomli_w.dumps({"provenance": table})

@@ -8,15 +8,27 @@ import logging
 import os
 import sqlite3
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
-from evoframe.champion import FORMAT, champion_document
+import attrs
+
+from evoframe.champion import champion_document
+from evoframe.checksums import Checksums
 from evoframe.errors import InputError, RunError
+from evoframe.locking import Lock
 from evoframe.values import Design, Pair, PopulationReport, Turn
 
-__all__ = ["Store", "write_atomically", "write_json"]
+__all__ = ["CONFIG_FILE", "DATABASE_FILE", "RUN_FORMAT", "Store", "write_atomically", "write_json"]
+
+RUN_FORMAT = 2
+"""Version of the run directory; champion.json has its own."""
+
+CONFIG_FILE = "config.toml"
+DATABASE_FILE = "run.db"
+
+Exports: TypeAlias = Callable[[Design], Mapping[str, bytes | None]]
 
 _log = logging.getLogger(__name__)
 
@@ -43,44 +55,66 @@ CREATE TABLE state (part TEXT PRIMARY KEY, turn INTEGER NOT NULL, state TEXT NOT
 CREATE TABLE workload (
     turn INTEGER PRIMARY KEY, pairs INTEGER NOT NULL, simulations INTEGER NOT NULL, seconds REAL NOT NULL
 );
+CREATE TABLE resumes (number INTEGER PRIMARY KEY, after_turn INTEGER, differences TEXT NOT NULL);
+CREATE TABLE checksums (name TEXT PRIMARY KEY, checksum TEXT NOT NULL) WITHOUT ROWID;
 """
 
 
+@attrs.define
 class Store:
-    """The directory of a run that is being written.
+    """The directory of a run that is being written, by this process and no other.
 
-    Args:
+    All methods raise :class:`RunError` when the disk does not take what they write.
+
+    Attributes:
         directory: The run's directory.
-        roles: Names of the populations, in order.
         simulation: What is needed to simulate the champion again, for its file.
         exports: Gives the champion as files of other programs: ending -> bytes, ``None`` for no file.
-
-    Raises:
-        InputError: The directory belongs to another run, or cannot be written.
-        RunError: Raised by all methods when the disk does not take what they write.
     """
 
-    def __init__(
-        self,
-        directory: Path,
-        roles: list[str],
-        simulation: Mapping[str, Any],
-        exports: Callable[[Design], Mapping[str, bytes | None]] = lambda _: {},
-    ) -> None:
-        self.directory = directory
-        self.simulation = simulation
-        self.exports = exports
-        self._database = _new_database(directory / "run.db")
+    directory: Path
+    simulation: Mapping[str, Any]
+    exports: Exports
+    _lock: Lock
+    _database: sqlite3.Connection
+    _checksums: Checksums = attrs.field(factory=Checksums, init=False)
+    _synced: float = attrs.field(factory=time.monotonic, init=False)
+
+    @classmethod
+    def open(
+        cls, directory: Path, simulation: Mapping[str, Any], lock: Lock, exports: Exports = lambda _: {}
+    ) -> Store:
+        """Open the database of a directory, or make it; :meth:`begin` or :meth:`go_on` comes next.
+
+        Raises:
+            InputError: It cannot be written.
+        """
+        return cls(directory, simulation, exports, lock, _opened(directory / DATABASE_FILE))
+
+    def begin(self, roles: Sequence[str], configuration: Mapping[str, Any]) -> None:
+        """Lay the database out.
+
+        Args:
+            roles: Names of the populations, in order.
+            configuration: The tables that decide the run, which must be the same when it goes on.
+        """
+        columns = "".join(f'"{role}" INTEGER NOT NULL, ' for role in roles).removesuffix(", ")
         with self._transaction():
-            columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
             for statement in _SCHEMA.format(roles=columns).split(";"):
                 self._database.execute(statement)
-            self._database.execute("INSERT INTO meta VALUES ('format', ?)", (str(FORMAT),))
-        self._synced = time.monotonic()
+            self._replace("meta", [("format", str(RUN_FORMAT)), ("configuration", _json(configuration))])
 
-    def save_config(self, text: str) -> None:
-        """Write the resolved configuration."""
-        write_atomically(self.directory / "config.toml", text.encode())
+    def go_on(self, rows: Mapping[str, Sequence[Sequence[Any]]], resume: Sequence[Any]) -> None:
+        """Go on where a run was left, and note it.
+
+        Args:
+            rows: All rows of the tables that only grow, as they were read.
+            resume: The row of this resume.
+        """
+        for table, saved in rows.items():
+            self._checksums.add(table, saved)
+        with self._transaction():
+            self._insert("resumes", [tuple(resume)])
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
         """Save a turn and the state after it, both or neither; then the champion's files, if it is a new one.
@@ -91,22 +125,21 @@ class Store:
         """
         champion = champion_document(turn.best_pair, self.simulation) if turn.best_pair else None
         with self._transaction():
-            self._insert("turns", (_turn_row(turn.index, report) for report in turn.reports))
-            for report in turn.reports:
-                self._insert("individuals", _individual_rows(turn.index, report))
+            reports = sorted(turn.reports, key=lambda report: report.population)  # as the keys of the rows
+            self._insert("turns", [_turn_row(turn.index, report) for report in reports])
+            members = [row for report in reports for row in _individual_rows(turn.index, report)]
+            self._insert("individuals", members)
             self._insert("pairs", _pair_rows(turn.index, turn.pairs))
             work = turn.workload
             self._insert("workload", [(turn.index, work.pairs, work.simulations, work.seconds)])
             if champion:
                 self._insert("best_pairs", [(turn.index, champion["score"], _json(champion))])
-            for part, values in state.items():
-                row = (part, turn.index, _json(values))
-                self._database.execute("INSERT OR REPLACE INTO state VALUES (?, ?, ?)", row)
+            self._replace("state", [(part, turn.index, _json(values)) for part, values in state.items()])
         if champion and turn.best_pair:
-            self._save_champion(champion, turn.best_pair.design)
+            self.save_champion(champion, turn.best_pair.design)
         self._synchronise()
 
-    def _save_champion(self, document: Mapping[str, Any], design: Design) -> None:
+    def save_champion(self, document: Mapping[str, Any], design: Design) -> None:
         """Write the champion's files; none of an earlier one stays."""
         write_json(self.directory / "champion.json", document)
         for ending, data in self.exports(design).items():
@@ -119,9 +152,7 @@ class Store:
     def finish(self, result: Mapping[str, Any]) -> None:
         """Note the final figures."""
         with self._transaction():
-            for key, value in result.items():
-                row = (key, _json(value))
-                self._database.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", row)
+            self._replace("meta", [(key, _json(value)) for key, value in result.items()])
 
     def close(self) -> None:
         """Leave one self-contained database file, unless somebody is reading it just now."""
@@ -130,12 +161,25 @@ class Store:
         except sqlite3.Error as error:
             _log.info("%s: the journal stays beside the database: %s", self.directory, error)
         self._database.close()
+        self._lock.release()
 
-    def _insert(self, table: str, rows: Iterator[tuple[Any, ...]] | list[tuple[Any, ...]]) -> None:
+    def _insert(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
+        """Add rows to a table that only grows, in the order of their keys."""
         listed = list(rows)
         if listed:
-            marks = ", ".join("?" * len(listed[0]))
-            self._database.executemany(f"INSERT INTO {table} VALUES ({marks})", listed)  # noqa: S608 - our names
+            self._write("INSERT", table, listed)
+            self._checksums.add(table, listed)
+            self._write("INSERT OR REPLACE", "checksums", [self._checksums.of(table)])
+
+    def _replace(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
+        """Put rows in place of those with the same keys."""
+        self._write("INSERT OR REPLACE", table, rows)
+        checksums = [Checksums.of_row(table, row) for row in rows]
+        self._write("INSERT OR REPLACE", "checksums", checksums)
+
+    def _write(self, verb: str, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
+        marks = ", ".join("?" * len(rows[0]))
+        self._database.executemany(f"{verb} INTO {table} VALUES ({marks})", rows)
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
@@ -189,14 +233,8 @@ def _json(value: Any) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
-def _new_database(path: Path) -> sqlite3.Connection:
+def _opened(path: Path) -> sqlite3.Connection:
     """Open a database that survives a kill at any moment; see ``_SYNC_INTERVAL`` for a power cut."""
-    try:
-        path.touch(exist_ok=False)  # whoever makes it owns the directory
-    except FileExistsError as error:
-        raise InputError(f"{path.parent}: is in use by another run") from error
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
     try:
         database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
         database.execute("PRAGMA journal_mode = WAL")

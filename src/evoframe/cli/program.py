@@ -14,6 +14,7 @@ from evoframe.cli.config import config
 from evoframe.cli.context import common_options, plugins_of
 from evoframe.cli.export import export
 from evoframe.cli.plugins import plugins
+from evoframe.cli.resume import resume
 from evoframe.cli.run import run
 from evoframe.cli.simulate import simulate
 from evoframe.cli.verify import verify
@@ -69,6 +70,7 @@ Examples:
   evoframe run                                the published experiment
   evoframe run quick                          a few seconds of it
   evoframe run --set aggregator=hm --seed 7
+  evoframe resume runs/paper-1                go on with it after an interruption
   evoframe simulate runs/paper-1/champion.json
   evoframe verify runs/paper-1                is its champion real?
   evoframe export runs/paper-1 --to vxa
@@ -91,7 +93,7 @@ def cli() -> None:
     """
 
 
-for command in (completion, config, export, plugins, run, simulate, verify):
+for command in (completion, config, export, plugins, resume, run, simulate, verify):
     cli.add_command(command)
 
 

@@ -1,0 +1,67 @@
+"""Checksums of what a run saves: a database of SQLite has none, so damage would be read as results."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+__all__ = ["CHAINED", "SINGLE", "Checksums"]
+
+Row = Sequence[Any]
+
+CHAINED = ("turns", "individuals", "pairs", "best_pairs", "workload", "resumes")
+"""Tables that only grow: one checksum for all rows, in the order of their keys."""
+
+SINGLE = ("meta", "state")
+"""Tables whose rows are replaced: a checksum for each row, by its key."""
+
+
+class Checksums:
+    """The checksums of tables, which grow with them."""
+
+    def __init__(self) -> None:
+        self._hashes = {table: _new_hash() for table in CHAINED}
+
+    def add(self, table: str, rows: Iterable[Row]) -> None:
+        """Take rows in that follow those before, in the order of their keys."""
+        self._hashes[table].update(_text(rows))
+
+    def of(self, table: str) -> tuple[str, str]:
+        """Return the name and the checksum of a table that grows."""
+        return table, self._hashes[table].hexdigest()
+
+    @staticmethod
+    def of_row(table: str, row: Row) -> tuple[str, str]:
+        """Return the name and the checksum of a row that can be replaced."""
+        checksum = _new_hash()
+        checksum.update(_text([row]))
+        return f"{table}:{row[0]}", checksum.hexdigest()
+
+    @classmethod
+    def of_rows(cls, table: str, rows: Iterable[Row]) -> Iterator[tuple[str, str]]:
+        """Yield the names and checksums of all *rows* of a table, as they were read."""
+        if table in SINGLE:
+            yield from (cls.of_row(table, row) for row in rows)
+        elif table in CHAINED:
+            checksums = cls()
+            checksums.add(table, rows)
+            yield checksums.of(table)
+
+
+def _new_hash() -> hashlib.blake2b:
+    return hashlib.blake2b(digest_size=16)
+
+
+def _text(rows: Iterable[Row]) -> bytes:
+    """Return rows as one text, which is the same however they are parted into calls."""
+    listed = list(rows)
+    text = json.dumps(listed, separators=(",", ":"))
+    if "-0.0" in text:  # the database keeps no sign of a zero
+        text = json.dumps([[_signless(value) for value in row] for row in listed], separators=(",", ":"))
+    return f"{text[1:-1]},".encode() if listed else b""
+
+
+def _signless(value: Any) -> Any:
+    return value + 0.0 if isinstance(value, float) else value

@@ -1,0 +1,133 @@
+"""What `run` and `resume` do with a run: play it, say what came of it, and stop on demand."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+
+import click
+from rich.table import Table
+
+from evoframe.cli.context import is_quiet, output, scored, unit_of
+from evoframe.cli.progress import Progress
+from evoframe.cli.verify import verification_table
+from evoframe.config import RunConfig
+from evoframe.loading import Run, load_run
+from evoframe.observers import Observers
+from evoframe.run import Execution, verify_champion
+from evoframe.verification import can_verify
+
+__all__ = ["play", "show_end"]
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def play(ctx: click.Context, execution: Execution) -> None:
+    """Run to the end, and show and verify what came of it; or stop where a signal demands it."""
+    manager = execution.config.discovered.manager
+    if not is_quiet(ctx):
+        manager.register(Progress(), name="evoframe:progress")
+    with _stop_on_signals() as stop:
+        try:
+            completed = execution.play(Observers(manager), stop.is_asked)
+        except KeyboardInterrupt:
+            completed = False
+    if not completed:
+        click.echo(_interrupted(load_run(execution.directory)), err=True)
+        ctx.exit(stop.exit_code)
+    show_end(ctx, execution.config, execution.directory)
+
+
+def show_end(ctx: click.Context, config: RunConfig, directory: Path) -> None:
+    """Show what came of a run that has come to its end, and verify its champion."""
+    quiet = is_quiet(ctx)
+    if quiet:
+        click.echo(directory)
+    else:
+        output().print(_summary(load_run(directory), unit_of(config)))
+    try:
+        _verify(config, directory, quiet)
+    except KeyboardInterrupt:
+        click.echo(
+            f"Interrupted; the run is complete and saved in {directory}, but not verified; "
+            f"evoframe verify {directory} does that",
+            err=True,
+        )
+        ctx.exit(_exit_code(signal.SIGINT))
+
+
+def _verify(config: RunConfig, directory: Path, quiet: bool) -> None:
+    """Verify the champion, if that can be done, and show what came of it."""
+    if not quiet and can_verify(config.simulator.component):
+        click.echo("verifying the champion", err=True)
+    verification = verify_champion(config, directory)
+    if verification is not None and not quiet:
+        console = output()
+        console.print()
+        console.print(verification_table(verification))
+
+
+def _interrupted(stopped: Run) -> str:
+    last, directory = stopped.last_turn, stopped.directory
+    saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
+    return f"Interrupted; {saved} in {directory}; to go on: evoframe resume {directory}"
+
+
+class _Stop:
+    """Remembers that somebody asked to stop; a second request stops at once."""
+
+    def __init__(self) -> None:
+        self.asked_by: int | None = None
+
+    def is_asked(self) -> bool:
+        return self.asked_by is not None
+
+    @property
+    def exit_code(self) -> int:
+        return _exit_code(self.asked_by or signal.SIGINT)
+
+    def handle(self, number: int, frame: FrameType | None) -> None:
+        if self.asked_by is not None:
+            signal.default_int_handler(number, frame)
+        self.asked_by = number
+        again = "press Ctrl-C again" if number == signal.SIGINT else "send the signal again"
+        click.echo(f"\nStopping after this turn; {again} to stop at once.", err=True)
+
+
+def _exit_code(number: int) -> int:
+    """Return what a shell expects of a process that was ended by a signal."""
+    return 128 + number
+
+
+@contextlib.contextmanager
+def _stop_on_signals() -> Iterator[_Stop]:
+    stop = _Stop()
+    previous = {number: signal.signal(number, stop.handle) for number in _SIGNALS}
+    try:
+        yield stop
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+def _summary(finished: Run, unit: str) -> Table:
+    table = Table(box=None, show_header=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    result, work = finished.summary, finished.workload
+    pairs, simulations = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
+    diverged = sum(row["score"] is None for row in finished.pairs)
+    best = finished.table("best_pairs")[-1]
+    table.add_row("best pair simulated", f"{scored(best['score'], unit)}, in turn {best['turn']}")
+    for population, fittest in result["fittest"].items():
+        table.add_row(
+            f"fittest {population}", f"{scored(fittest['fitness'], unit)}, genome {fittest['genome_id']}"
+        )
+    table.add_row("fittest pair", scored(result["fittest_pair_score"], unit))
+    table.add_row("pairs", f"{pairs:,}, of which {simulations:,} simulated and {diverged:,} diverged")
+    table.add_row("time", f"{sum(row['seconds'] for row in work):.1f} s")
+    table.add_row("directory", str(finished.directory))
+    return table

@@ -1,0 +1,46 @@
+"""A run's directory is written by one process at a time."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import filelock
+
+from evoframe.errors import InputError
+
+__all__ = ["LOCK_FILE", "Lock", "locked", "released_on_error"]
+
+LOCK_FILE = "run.lock"
+"""Stays in the directory: to remove it would let two processes lock two files of one name."""
+
+Lock = filelock.BaseFileLock
+
+
+def locked(directory: Path) -> Lock:
+    """Return the lock of a run's directory, which ends with this process at the latest, however it ends.
+
+    Raises:
+        InputError: Another process has it, or the directory cannot be written.
+    """
+    lock = filelock.FileLock(directory / LOCK_FILE, timeout=0)
+    try:
+        lock.acquire()
+    except filelock.Timeout as error:
+        raise InputError(
+            f"{directory}: is being written by another process; wait until it has ended, or end it"
+        ) from error
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+    return lock
+
+
+@contextlib.contextmanager
+def released_on_error(lock: Lock) -> Iterator[None]:
+    """Give the lock back if what follows fails; else it is somebody's to keep."""
+    try:
+        yield
+    except BaseException:
+        lock.release()
+        raise

@@ -1,0 +1,176 @@
+"""Runs that go on where they were left, bit for bit as if nothing had happened."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from evoframe.champion import design_from_json, parsed_json
+from evoframe.checksums import CHAINED
+from evoframe.coevolution import Coevolution
+from evoframe.config import RunConfig
+from evoframe.errors import ConfigurationError, InputError
+from evoframe.layers import Layer, layers_of
+from evoframe.loading import Run, has_begun, load_run
+from evoframe.locking import locked, released_on_error
+from evoframe.observers import Observers
+from evoframe.plugins import Plugins
+from evoframe.provenance import differences, provenance
+from evoframe.resolve import load_config
+from evoframe.run import Execution, assemble, opened_store, verify_champion
+from evoframe.store import CONFIG_FILE, Store
+
+__all__ = ["is_finished", "reopen", "resume"]
+
+
+def resume(
+    directory: str | Path,
+    /,
+    *,
+    workers: int | None = None,
+    allow_different_versions: bool = False,
+    plugins: Plugins | None = None,
+) -> Run:
+    """Go on with a run from its last complete turn, as the command ``evoframe resume`` does.
+
+    Args:
+        directory: The run's directory.
+        workers: Overrides ``executor.workers``; the result does not depend on it.
+        allow_different_versions: Go on although versions or the machine are not those that the run began
+            with, and note it in the table ``resumes``.
+        plugins: The plugins to choose from; by default those that are installed.
+
+    Returns:
+        The finished run; one that was finished already is verified, if it was not.
+
+    Raises:
+        ConfigurationError: The configuration, a version or the machine differs; says what.
+        InputError: It is no run's directory, it is damaged, or another process writes to it.
+        RunError: The run cannot go on; what was saved stays.
+    """
+    directory = Path(directory)
+    overrides = layers_of({"executor.workers": workers})
+    if is_finished(directory):
+        config = load_config(directory / CONFIG_FILE, overrides=overrides, plugins=plugins)
+        if load_run(directory).verification is None:
+            verify_champion(config, directory)
+        return load_run(directory)
+    execution = reopen(directory, overrides, plugins, allow_different_versions=allow_different_versions)
+    execution.play(Observers(execution.config.discovered.manager))
+    execution.verify()
+    return load_run(directory)
+
+
+def is_finished(directory: Path) -> bool:
+    """Return whether a run's directory holds a run that has come to its end.
+
+    Raises:
+        InputError: It is no run's directory, or damaged.
+    """
+    _refuse_other_directories(directory)
+    return has_begun(directory) and load_run(directory).finished
+
+
+def reopen(
+    directory: Path,
+    overrides: Sequence[Layer] = (),
+    plugins: Plugins | None = None,
+    *,
+    allow_different_versions: bool = False,
+) -> Execution:
+    """Return a run ready to go on after its last complete turn.
+
+    Args:
+        directory: The run's directory.
+        overrides: Settings of the executor.
+        plugins: The plugins to choose from.
+        allow_different_versions: As for :func:`resume`.
+
+    Raises:
+        ConfigurationError: As :func:`resume`.
+        InputError: As :func:`resume`.
+    """
+    _refuse_other_directories(directory)
+    lock = locked(directory)
+    with released_on_error(lock):
+        config = load_config(directory / CONFIG_FILE, overrides=overrides, plugins=plugins)
+        saved = load_run(directory) if has_begun(directory) else None
+        changes = _changes(directory, config, saved, allowed=allow_different_versions)
+        coevolution = assemble(config)
+        try:
+            if saved is not None:
+                _restore(coevolution, saved)
+            store = opened_store(directory, config, lock)
+            if saved is None:  # killed before its first transaction
+                store.begin(list(config.populations), config.deciding())
+            else:
+                _go_on(store, saved, changes)
+        except BaseException:
+            coevolution.close()
+            raise
+        return Execution(config, directory, coevolution, store)
+
+
+def _refuse_other_directories(directory: Path) -> None:
+    if not (directory / CONFIG_FILE).is_file():
+        raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
+
+
+def _changes(directory: Path, config: RunConfig, saved: Run | None, *, allowed: bool) -> list[str]:
+    """Return what is not as when the run began.
+
+    Raises:
+        ConfigurationError: The configuration is another one, or something else differs without being allowed.
+    """
+    if saved is None:
+        return []
+    others = differences(saved.configuration, json.loads(json.dumps(config.deciding())))
+    if others:
+        raise ConfigurationError(_listed(f"{directory}: the configuration is not that of the run", others))
+    changes = differences(saved.config.get("provenance", {}), provenance(config))
+    if changes and not allowed:
+        todo = "to go on all the same, which is noted: --allow-different-versions"
+        raise ConfigurationError(
+            _listed(f"{directory}: not what the run was begun with, so its result may differ", changes)
+            + f"\n  {todo}"
+        )
+    return changes
+
+
+def _listed(message: str, lines: Sequence[str]) -> str:
+    return "\n  ".join([f"{message}:", *lines])
+
+
+def _restore(coevolution: Coevolution, saved: Run) -> None:
+    """Bring the loop to the end of the last turn.
+
+    Raises:
+        InputError: The state is missing, or no state.
+    """
+    state, last = saved.state, saved.last_turn
+    if last is None and not state:
+        return
+    try:
+        if state["loop"]["turn"] != last:
+            raise ValueError(f"the state is that after turn {state['loop']['turn']}, the last one is {last}")  # noqa: TRY301
+        coevolution.restore(state)
+    except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
+        cause = f"missing {error}" if isinstance(error, KeyError) else str(error)
+        raise InputError(f"{saved.directory}: the state cannot be restored: {cause}") from error
+
+
+def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:
+    """Complete or remove what a kill has left half done, and note the resume."""
+    for leftover in saved.directory.glob(".*.new"):
+        leftover.unlink(missing_ok=True)
+    rows: Mapping[str, Any] = {table: saved.rows(table) for table in CHAINED}
+    store.go_on(rows, (len(rows["resumes"]), saved.last_turn, json.dumps(changes)))
+    document = saved.champion_document
+    if document is None:
+        return
+    path = saved.directory / "champion.json"
+    if not path.is_file() or path.read_bytes() != f"{document}\n".encode():
+        champion = parsed_json(document)
+        store.save_champion(champion, design_from_json(champion["design"]))
