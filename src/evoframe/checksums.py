@@ -57,10 +57,16 @@ def _new_hash() -> hashlib.blake2b:
 def _text(rows: Iterable[Row]) -> bytes:
     """Return rows as one text, which is the same however they are parted into calls."""
     listed = list(rows)
-    text = json.dumps(listed, separators=(",", ":"))
+    text = _json(listed)
     if "-0.0" in text:  # the database keeps no sign of a zero
-        text = json.dumps([[_signless(value) for value in row] for row in listed], separators=(",", ":"))
+        text = _json([[_signless(value) for value in row] for row in listed])
     return f"{text[1:-1]},".encode() if listed else b""
+
+
+def _json(rows: list[Row]) -> str:
+    return json.dumps(
+        rows, separators=(",", ":"), default=repr
+    )  # bytes are read only from a damaged database
 
 
 def _signless(value: Any) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sqlite3
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ import attrs
 from evoframe.champion import champion_from_json, parsed_json
 from evoframe.checksums import CHAINED, SINGLE, Checksums
 from evoframe.errors import InputError
-from evoframe.store import CONFIG_FILE, DATABASE_FILE, RUN_FORMAT
+from evoframe.store import CONFIG_FILE, DATABASE_FILE, RUN_FORMAT, schema
 from evoframe.values import Design
 from evoframe.verification import VERIFICATION_FILE, Verification, verification_from_json
 
@@ -220,7 +220,7 @@ def load_run(directory: str | Path) -> Run:
         raise InputError(f"{directory}: is no run's directory: {path.name}: {error.strerror}") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid TOML: {error}") from error
-    _refuse_format(directory)
+    _refuse_other_databases(directory, config)
     run = Run(directory, config)
     run.table("meta")
     return run
@@ -245,12 +245,13 @@ def has_begun(directory: Path) -> bool:
 _SETTLED = ("format", "configuration")  # keys of meta that stand there from the beginning
 
 
-def _refuse_format(directory: Path) -> None:
-    """Look at the format before anything that another format may not have."""
+def _refuse_other_databases(directory: Path, config: Mapping[str, Any]) -> None:
+    """Look at the format first, since another may have other tables; beside ours there is nothing else."""
     path = directory / DATABASE_FILE
     try:
         with contextlib.closing(_open(path)) as database:
             found = [row[0] for row in database.execute("SELECT value FROM meta WHERE key = 'format'")]
+            statements = [row[0] for row in database.execute("SELECT sql FROM sqlite_master")]
     except sqlite3.Error as error:
         raise InputError(f"{path}: cannot be read: {error}") from error
     if found != [str(RUN_FORMAT)]:
@@ -259,6 +260,9 @@ def _refuse_format(directory: Path) -> None:
             f"{directory}: has {what}, but this evoframe reads format {RUN_FORMAT}; read it with the "
             f"evoframe that wrote it: {CONFIG_FILE} names its version under [provenance]"
         )
+    populations = config.get("populations")
+    if not isinstance(populations, dict) or set(statements) != set(schema(populations)):
+        raise InputError(f"{path}: is damaged: its tables are not those of a run with this {CONFIG_FILE}")
 
 
 def _open(path: Path) -> sqlite3.Connection:
@@ -278,7 +282,9 @@ def _tables(database: sqlite3.Connection) -> list[str]:
 
 
 def _checksums(database: sqlite3.Connection) -> dict[str, str]:
-    return dict(database.execute("SELECT name, checksum FROM checksums").fetchall())
+    return {
+        str(name): checksum for name, checksum in database.execute("SELECT name, checksum FROM checksums")
+    }
 
 
 def _compare_checksums(

@@ -20,7 +20,7 @@ from evoframe.errors import InputError, RunError
 from evoframe.locking import Lock
 from evoframe.values import Design, Pair, PopulationReport, Turn
 
-__all__ = ["CONFIG_FILE", "DATABASE_FILE", "RUN_FORMAT", "Store", "write_atomically", "write_json"]
+__all__ = ["CONFIG_FILE", "DATABASE_FILE", "RUN_FORMAT", "Store", "schema", "write_atomically", "write_json"]
 
 RUN_FORMAT = 2
 """Version of the run directory; champion.json has its own."""
@@ -58,6 +58,12 @@ CREATE TABLE workload (
 CREATE TABLE resumes (number INTEGER PRIMARY KEY, after_turn INTEGER, differences TEXT NOT NULL);
 CREATE TABLE checksums (name TEXT PRIMARY KEY, checksum TEXT NOT NULL) WITHOUT ROWID;
 """
+
+
+def schema(roles: Iterable[str]) -> list[str]:
+    """Return the statements that make the tables of a run's database."""
+    columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
+    return [statement.strip() for statement in _SCHEMA.format(roles=columns).split(";") if statement.strip()]
 
 
 @attrs.define
@@ -98,9 +104,8 @@ class Store:
             roles: Names of the populations, in order.
             configuration: The tables that decide the run, which must be the same when it goes on.
         """
-        columns = "".join(f'"{role}" INTEGER NOT NULL, ' for role in roles).removesuffix(", ")
         with self._transaction():
-            for statement in _SCHEMA.format(roles=columns).split(";"):
+            for statement in schema(roles):
                 self._database.execute(statement)
             self._replace("meta", [("format", str(RUN_FORMAT)), ("configuration", _json(configuration))])
 

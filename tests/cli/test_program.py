@@ -189,7 +189,8 @@ class TestRun:
         again = evoframe("run", "quick", "--set", "run.generations=0", "--out", "here")
         assert again.returncode == 2
         assert (
-            again.stderr.splitlines()[-1] == "Error: here: is not empty; choose another directory with --out"
+            again.stderr.splitlines()[-1]
+            == "Error: here: is not empty: it holds a finished run; choose another directory with --out"
         )
         assert (tmp_path / "here" / "run.db").read_bytes() == before
 

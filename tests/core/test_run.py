@@ -35,10 +35,10 @@ from evoframe import (
     run,
 )
 from evoframe.champion import design_from_json, design_to_json, read_champion
+from evoframe.locking import locked
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins, Source
 from evoframe.run import prepare
-from evoframe.store import Store
 
 Load = Callable[..., RunConfig]
 
@@ -50,6 +50,7 @@ class TestDirectory:
             "champion.json",
             "config.toml",
             "run.db",
+            "run.lock",
         ]
 
     def test_the_recorded_configuration_runs_again_to_the_same_end(
@@ -132,8 +133,8 @@ class TestDirectory:
         first = prepare(toy_config(), tmp_path / "run")
         with pytest.raises(InputError, match="is not empty"):
             prepare(toy_config(), tmp_path / "run")
-        with pytest.raises(InputError, match="is in use by another run"):
-            Store(tmp_path / "run", ["a", "b"], {})
+        with pytest.raises(InputError, match="is being written by another process"):
+            locked(tmp_path / "run")
         assert first.play(Observers(first.config.discovered.manager))
 
     def test_that_is_lost_in_the_middle_ends_the_run_in_a_sentence(
@@ -141,7 +142,7 @@ class TestDirectory:
     ) -> None:
         execution = prepare(toy_config(), tmp_path / "run")
         shutil.rmtree(tmp_path / "run")
-        with pytest.raises(RunError, match=r"config\.toml: cannot be written: No such file"):
+        with pytest.raises(RunError, match=r"champion\.json: cannot be written: No such file"):
             execution.play(Observers(execution.config.discovered.manager))
 
 
@@ -229,7 +230,7 @@ class TestPython:
         finished = run(toy_config(), out=tmp_path / "run")
         with contextlib.closing(sqlite3.connect(finished.directory / "run.db")) as database, database:
             database.execute("UPDATE meta SET value = '99' WHERE key = 'format'")
-        with pytest.raises(InputError, match=r"has the format \['99'\], but this evoframe reads format 1"):
+        with pytest.raises(InputError, match="has the format '99', but this evoframe reads format 2"):
             load_run(finished.directory)
 
 

@@ -1,0 +1,176 @@
+"""Kills runs at random moments, resumes them, and compares what comes of it with undisturbed runs.
+
+``python tests/survival/kills.py --kills 500`` is the long form; the suite kills 50 times. A kill counts only if a
+turn was saved since the run was last started. Half of them come from outside at any moment, the others from within:
+between two statements of a transaction, or around the writing of a champion's file.
+
+Every attempt is a fork of this process, so that no time is lost with starting Python.
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import contextlib
+import os
+import random
+import signal
+import sqlite3
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import evoframe.store
+from evoframe import Turn, hookimpl, load_config, load_run
+from evoframe.discovery import discover
+from evoframe.loading import has_begun
+from evoframe.observers import Observers
+from evoframe.resuming import is_finished, reopen
+from evoframe.run import prepare
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
+from recorded import assert_same_result, rows
+
+GENERATIONS = 40
+_PAUSE = 0.02  # s, at most, between a saved turn and a kill from outside: a turn takes less
+
+
+class Reporter:
+    """Tells the parent of every saved turn."""
+
+    def __init__(self, pipe: int) -> None:
+        self.pipe = pipe
+
+    @hookimpl
+    def evoframe_turn_finished(self, turn: Turn) -> None:
+        del turn
+        os.write(self.pipe, b".")
+
+
+def play(directory: Path, seed: int, workers: int, pipe: int) -> None:
+    """Begin a run, or go on with it, to its end."""
+    plugins = discover()
+    plugins.manager.register(Reporter(pipe))
+    overrides = [f"run.seed={seed}", f"run.generations={GENERATIONS}", f"executor.workers={workers}"]
+    if (directory / "config.toml").exists():
+        execution = reopen(directory, plugins=plugins)
+    else:
+        execution = prepare(load_config("quick", overrides=overrides, plugins=plugins), directory)
+    execution.play(Observers(execution.config.discovered.manager))
+
+
+def dies_at(call: int) -> None:
+    """Let this process kill itself at some call of what writes to the disk."""
+    left = [call]
+
+    def dying(function: Callable[..., Any], *, after: bool) -> Callable[..., Any]:
+        def wrapper(*arguments: Any) -> Any:
+            left[0] -= 1
+            if left[0] == 0 and not after:
+                os.kill(os.getpid(), signal.SIGKILL)
+            result = function(*arguments)
+            if left[0] == 0:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return result
+
+        return wrapper
+
+    store: Any = evoframe.store.Store
+    store._write = dying(store._write, after=True)  # noqa: SLF001 - a fault, as a test may have one
+    replace: Any = dying(Path.replace, after=call % 2 == 0)
+    Path.replace = replace  # type: ignore[method-assign]
+
+
+@contextlib.contextmanager
+def forked(action: Callable[[int], None]) -> Iterator[tuple[int, int]]:
+    """Yield the number of a process that runs *action*, and the end of a pipe to read from."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        status = 1
+        try:
+            os.close(reading)
+            action(writing)
+            status = 0
+        finally:
+            os._exit(status)
+    os.close(writing)
+    try:
+        yield child, reading
+    finally:
+        os.close(reading)
+
+
+def attempt(directory: Path, seed: int, chance: random.Random) -> str:
+    """Let a run go on, and kill it. Was it ``finished``, killed ``outside`` or ``inside``, or ``early``?"""
+    workers, inside, turns = chance.choice([1, 2]), chance.random() < 0.5, chance.randint(1, 3)
+    call = chance.randint(6, 24)  # a turn writes about ten times
+
+    def action(pipe: int) -> None:
+        if inside:
+            dies_at(call)
+        play(directory, seed, workers, pipe)
+
+    with forked(action) as (child, pipe):
+        saved = 0
+        while (inside or saved < turns) and os.read(pipe, 1):
+            saved += 1
+        if not inside:
+            time.sleep(chance.uniform(0.0, _PAUSE))
+            os.kill(child, signal.SIGKILL)
+        _, status = os.waitpid(child, 0)
+    if os.WIFEXITED(status):
+        if os.WEXITSTATUS(status) != 0:
+            raise SystemExit(f"seed {seed}: a run failed instead of being killed")
+        return "finished"
+    if saved == 0:
+        return "early"
+    return "inside" if inside else "outside"
+
+
+def compare(directory: Path, undisturbed: Path, seed: int) -> None:
+    """Compare a run that was killed again and again with one that was not."""
+    with forked(lambda pipe: play(undisturbed, seed, 2, pipe)) as (child, pipe):
+        while os.read(pipe, 1024):
+            pass
+        _, status = os.waitpid(child, 0)
+    if status != 0:
+        raise SystemExit(f"seed {seed}: the undisturbed run failed")
+    assert_same_result(undisturbed, directory)
+    pairs = [[row[:2] for row in rows(each, "workload")] for each in (undisturbed, directory)]
+    assert pairs[0] == pairs[1]
+    with contextlib.closing(sqlite3.connect(directory / "run.db")) as database:
+        assert database.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+
+
+def main() -> None:
+    """Kill until it was often enough; the run that is then going on is finished and compared too."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--kills", type=int, default=500)
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    chance, seed = random.Random(given.seed), given.seed  # noqa: S311
+    counts: collections.Counter[str] = collections.Counter()
+    most = turns = 0
+    with tempfile.TemporaryDirectory() as base:
+        while counts["inside"] + counts["outside"] < given.kills:
+            directory, kills = Path(base) / f"killed-{seed}", 0
+            while not (directory.exists() and has_begun(directory) and is_finished(directory)):
+                how = attempt(directory, seed, chance)
+                counts[how] += 1
+                kills += how in ("inside", "outside")
+            compare(directory, Path(base) / f"undisturbed-{seed}", seed)
+            turns += load_run(directory).summary["turns"]
+            most, seed = max(most, kills), seed + 1
+    print(  # noqa: T201
+        f"{counts['inside'] + counts['outside']} kills after a saved turn ({counts['inside']} of them while "
+        f"something was being written), {counts['early']} before any; {seed - given.seed} runs of {turns} turns in "
+        f"all, at most {most} kills in one: all equal to undisturbed runs"
+    )
+
+
+if __name__ == "__main__":
+    main()
