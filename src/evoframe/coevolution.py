@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import numbers
 import time
@@ -12,7 +13,8 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.errors import RunError
+from evoframe.blame import blaming
+from evoframe.errors import ComponentError
 from evoframe.evaluation import Evaluator, Score
 from evoframe.population import Population
 from evoframe.protocols import Aggregator, CollaborationStrategy
@@ -144,12 +146,15 @@ class Coevolution:
         """
         chosen = []
         for other in (other for i, other in enumerate(self.populations) if i != index):
-            size = self.strategy.size(len(other.members))
-            selected = np.asarray(self.strategy.select(other.members, self.populations[index].rng))
+            with blaming("collaboration"):
+                size = self.strategy.size(len(other.members))
+            with blaming("collaboration"):
+                selected = np.asarray(self.strategy.select(other.members, self.populations[index].rng))
             if not _are_positions(selected, size, len(other.members)):
-                raise RunError(
-                    f"the collaboration strategy {type(self.strategy).__name__} chose {selected.tolist()}, "
-                    f"not {size} of the {len(other.members)} members of '{other.name}'"
+                raise ComponentError(
+                    "collaboration",
+                    f"chose {selected.tolist()}, not {size} of the {len(other.members)} members of "
+                    f"'{other.name}'",
                 )
             chosen.append(selected.tolist())
         return chosen
@@ -189,12 +194,14 @@ class Coevolution:
         for meeting, score in scores.items():
             rows[meeting[index]].append(score.value)
         floor = min((score.value for score in scores.values() if score.value is not None), default=None)
-        population.judge([_fitness(row, fold) for row in rows], floor)
+        fitness = [_fitness(row, fold, population.called(i)) for i, row in enumerate(rows)]
+        population.judge(fitness, floor)
 
     def _scores(self, meetings: Collection[Meeting]) -> dict[Meeting, Score]:
         """Score different meetings; those that share their first members are simulated side by side."""
         together = sorted(meetings)
-        scores = self.evaluator.evaluate(self._designs(together), len(together))
+        with self._saying_who(together):
+            scores = self.evaluator.evaluate(self._designs(together), len(together))
         by_meeting = dict(zip(together, scores, strict=True))
         return {meeting: by_meeting[meeting] for meeting in meetings}
 
@@ -205,9 +212,23 @@ class Coevolution:
             for length, population in enumerate(self.populations, start=1):
                 shared = meeting[:length]
                 if shared not in decoded:
-                    network = population.network(shared[-1])
-                    decoded[shared] = population.encoder.decode(network, decoded[shared[:-1]])
+                    decoded[shared] = population.decode(shared[-1], decoded[shared[:-1]])
             yield decoded.pop(meeting)
+
+    @contextlib.contextmanager
+    def _saying_who(self, meetings: Sequence[Meeting]) -> Iterator[None]:
+        """Say whose designs an error is about that knows only their places among those of *meetings*."""
+        try:
+            yield
+        except ComponentError as error:
+            if not error.concerns:
+                met = [self._called(meetings[place]) for place in error.places]
+                error.concerns = "; ".join(met)
+            raise
+
+    def _called(self, meeting: Meeting) -> str:
+        met = zip(self.populations, meeting, strict=True)
+        return " with ".join(population.called(position) for population, position in met)
 
     def _pair(self, meeting: Meeting, score: Score) -> Pair:
         ids = tuple(
@@ -230,9 +251,7 @@ class Coevolution:
             turn=self.turn,
             score=self.best_score,
             genome_ids={population.name: population.members[i].id for population, i in chosen},
-            genomes={
-                population.name: population.evolver.dump(population.genomes[i]) for population, i in chosen
-            },
+            genomes={population.name: population.dump(i) for population, i in chosen},
             design=design,
         )
 
@@ -241,14 +260,16 @@ def _arithmetic_mean(scores: Scores) -> float:
     return math.fsum(scores) / len(scores)
 
 
-def _fitness(row: Sequence[float | None], fold: Fold) -> float | None:
+def _fitness(row: Sequence[float | None], fold: Fold, individual: str) -> float | None:
     """Return the fold of the scores of an individual, or ``None`` if one of its simulations diverged."""
     values = [value for value in row if value is not None]
     if len(values) < len(row):
         return None
-    fitness = fold(np.array(values, dtype=np.float64))
+    with blaming("aggregator", individual):
+        fitness = fold(np.array(values, dtype=np.float64))
     if not isinstance(fitness, numbers.Real) or not math.isfinite(fitness):
-        raise RunError(f"the aggregator gave the fitness {fitness!r} for the scores {values}")
+        problem = f"gave the fitness {fitness!r} for the scores {values}"
+        raise ComponentError("aggregator", problem, individual)
     return float(fitness)
 
 

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-__all__ = ["ConfigurationError", "EvoframeError", "InputError", "PluginError", "PluginWarning", "RunError"]
+__all__ = [
+    "ComponentError",
+    "ConfigurationError",
+    "EvoframeError",
+    "InputError",
+    "PluginError",
+    "PluginWarning",
+    "RunError",
+]
 
 
 class EvoframeError(Exception):
@@ -27,6 +35,30 @@ class PluginError(EvoframeError):
 
 class RunError(EvoframeError):
     """A run that cannot go on, or a run directory that cannot be used."""
+
+
+class ComponentError(RunError):
+    """A component failed, or returned what it must not.
+
+    Attributes:
+        component: Its dotted key in a configuration, such as ``aggregator``.
+        problem: What it did.
+        concerns: Which individuals it was about; may be empty.
+        keys: The keys of the designs that it was about, if only they are known.
+        places: Their places among all designs that are evaluated together.
+    """
+
+    def __init__(self, component: str, problem: str, concerns: str = "") -> None:
+        super().__init__(component, problem, concerns)  # all of them, so that it can pass between processes
+        self.component = component
+        self.problem = problem
+        self.concerns = concerns
+        self.keys: tuple[bytes, ...] = ()
+        self.places: tuple[int, ...] = ()
+
+    def __str__(self) -> str:
+        about = f" ({self.concerns})" if self.concerns else ""
+        return f"{self.component}: {self.problem}{about}"
 
 
 class PluginWarning(UserWarning):

@@ -7,10 +7,12 @@ import numbers
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import attrs
+import numpy as np
 
-from evoframe.errors import RunError
+from evoframe.blame import blaming
+from evoframe.errors import ComponentError
 from evoframe.protocols import ExecutorRun, Objective, Simulator
-from evoframe.values import Design, Record
+from evoframe.values import Design, Outcome, Record
 
 __all__ = ["Evaluator", "Score", "simulated"]
 
@@ -56,12 +58,20 @@ class Evaluator:
             count: How many there are.
 
         Raises:
-            RunError: The objective gave a score that is not finite for a simulation that did not diverge.
+            ComponentError: A component failed, or returned what it must not.
         """
         keys: list[bytes] = []
-        for scores in self.workers.map(self._simulate, self._batches(designs, count, keys)):
-            self._cache |= scores
-            self.simulations += len(scores)
+        with blaming("executor"):
+            try:
+                results = list(self.workers.map(self._simulate, self._batches(designs, count, keys)))
+            except ComponentError as error:
+                error.places = tuple(keys.index(key) for key in error.keys if key in keys)
+                raise
+            for scores in results:
+                self._cache |= scores
+                self.simulations += len(scores)
+        if any(key not in self._cache for key in keys):
+            raise ComponentError("executor", "did not return the results of all batches")
         return [self._cache[key] for key in keys]
 
     def close(self) -> None:
@@ -76,7 +86,7 @@ class Evaluator:
         known: set[bytes] = set()
         batch: dict[bytes, Design] = {}
         for design in designs:
-            keys.append(key := self.simulator.key(design, record))
+            keys.append(key := self._key(design, record))
             if key not in known and key not in self._cache:
                 known.add(key)
                 batch[key] = design
@@ -89,9 +99,31 @@ class Evaluator:
     def _batch_size(self, left: int) -> int:
         return min(max(1, left // (_BATCHES_PER_WORKER * self.workers.workers)), _LARGEST_BATCH)
 
-    def _simulate(self, batch: Mapping[bytes, Design]) -> dict[bytes, Score]:
-        designs = list(batch.values())
-        scores = simulated(self.simulator, designs, self.objective.record, self.objective)
+    def _key(self, design: Design, record: Record) -> bytes:
+        with blaming("simulator"):
+            key = self.simulator.key(design, record)
+        if not isinstance(key, bytes):
+            raise ComponentError("simulator", f"gave a key that is no bytes, but {type(key).__name__}")
+        return key
+
+    @property
+    def _simulate(self) -> _Simulation:
+        return _Simulation(self.simulator, self.objective)
+
+
+@attrs.frozen
+class _Simulation:
+    """What a worker does with a batch, and no more, since it may travel to another process."""
+
+    simulator: Simulator
+    objective: Objective
+
+    def __call__(self, batch: Mapping[bytes, Design]) -> dict[bytes, Score]:
+        try:
+            scores = simulated(self.simulator, list(batch.values()), self.objective.record, self.objective)
+        except ComponentError as error:
+            error.keys = tuple(batch)
+            raise
         return dict(zip(batch, scores, strict=True))
 
 
@@ -101,20 +133,38 @@ def simulated(
     """Simulate *designs* and return what *objective* gives for each, without looking for repeats.
 
     Raises:
-        RunError: A design has no outcome, or a score that is not finite though it did not diverge.
+        ComponentError: Simulator or objective failed, or returned what they must not.
     """
-    outcomes = simulator.simulate(designs, record)
+    with blaming("simulator"):
+        outcomes = list(simulator.simulate(designs, record))
     if len(outcomes) != len(designs):
-        raise RunError(f"the simulator returned {len(outcomes)} outcomes for {len(designs)} designs")
-    return [
-        Score(None, outcome.diverged_at)
-        if outcome.diverged_at is not None
-        else Score(_finite(objective.score(outcome)))
-        for outcome in outcomes
-    ]
+        raise ComponentError("simulator", f"returned {len(outcomes)} outcomes for {len(designs)} designs")
+    return [_score(outcome, record, objective) for outcome in outcomes]
 
 
-def _finite(score: float) -> float:
+def _score(outcome: Outcome, record: Record, objective: Objective) -> Score:
+    if not isinstance(outcome, Outcome):
+        raise ComponentError("simulator", f"returned no Outcome, but {type(outcome).__name__}")
+    if outcome.diverged_at is not None:
+        return Score(None, outcome.diverged_at)
+    _refuse_tracks(outcome, record)
+    with blaming("objective"):
+        score = objective.score(outcome)
     if not isinstance(score, numbers.Real) or not math.isfinite(score):
-        raise RunError(f"the objective gave the score {score!r} for a simulation that did not diverge")
-    return float(score)
+        problem = f"gave the score {score!r} for a simulation that did not diverge"
+        raise ComponentError("objective", problem)
+    return Score(float(score))
+
+
+def _refuse_tracks(outcome: Outcome, record: Record) -> None:
+    """Refuse tracks that are not what was asked for."""
+    for name in record.tracks:
+        track = outcome.tracks.get(name)
+        if not isinstance(track, np.ndarray):
+            raise ComponentError("simulator", f"returned no array for the track '{name}'")
+        if len(track) != len(outcome.steps):
+            counts = f"{len(track)} samples of the track '{name}' for {len(outcome.steps)} steps"
+            raise ComponentError("simulator", f"returned {counts}")
+        if not np.isfinite(track).all():
+            problem = f"returned numbers that are not finite in the track '{name}', but had not diverged"
+            raise ComponentError("simulator", problem)

@@ -10,9 +10,10 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.errors import RunError
+from evoframe.blame import blaming
+from evoframe.errors import ComponentError, RunError
 from evoframe.protocols import Encoder, EvolverRun, Network
-from evoframe.values import Member, PopulationReport
+from evoframe.values import Design, Member, PopulationReport
 
 __all__ = ["Population"]
 
@@ -45,16 +46,54 @@ class Population:
 
     def reproduce(self) -> None:
         """Replace the genomes by the next ones; at first, by the initial ones."""
-        self.genomes = self.evolver.ask()
-        self.members = tuple(self.evolver.members())
+        with blaming(self._evolver):
+            genomes = self.evolver.ask()
+            members = tuple(self.evolver.members())
+            counts = len(genomes), len(members)
+        if counts[0] < 1 or counts[0] != counts[1] or counts[0] != (len(self.genomes) or counts[0]):
+            wanted = f", expected {len(self.genomes)} of each" if self.genomes else ""
+            raise ComponentError(self._evolver, f"gave {counts[0]} genomes and {counts[1]} members{wanted}")
+        self.genomes, self.members = genomes, members
         self.generation += 1
         self._networks.clear()
 
     def network(self, position: int) -> Network:
         """Return the network that the genome at *position* expresses."""
         if position not in self._networks:
-            self._networks[position] = self.evolver.express(self.genomes[position])
+            with blaming(self._evolver, self.called(position)):
+                self._networks[position] = self.evolver.express(self.genomes[position])
         return self._networks[position]
+
+    def dump(self, position: int) -> Any:
+        """Return the genome at *position* as JSON values."""
+        with blaming(self._evolver, self.called(position)):
+            return self.evolver.dump(self.genomes[position])
+
+    def decode(self, position: int, design: Design) -> Design:
+        """Return a design to which the genome at *position* has added what it provides.
+
+        Raises:
+            ComponentError: Evolver or encoder failed, or the design lacks a role that the encoder provides.
+        """
+        network = self.network(position)
+        with blaming(self._encoder, self.called(position)):
+            decoded = self.encoder.decode(network, design)
+            lacking = [role for role in self.encoder.provides if role not in decoded.roles]
+        if lacking:
+            raise ComponentError(self._encoder, f"left out the role '{lacking[0]}'", self.called(position))
+        return decoded
+
+    def called(self, position: int) -> str:
+        """Return what a person calls the individual at *position*."""
+        return f"{self.name} {self.members[position].id}"
+
+    @property
+    def _evolver(self) -> str:
+        return f"populations.{self.name}.evolver"
+
+    @property
+    def _encoder(self) -> str:
+        return f"populations.{self.name}.encoder"
 
     def judge(self, fitness: Sequence[float | None], floor: float | None) -> None:
         """Take the fitness of all genomes.
@@ -77,7 +116,8 @@ class Population:
             )
         self._lowest = lowest if self._lowest is None else min(lowest, self._lowest)
         told = np.array([lowest if value is None else value for value in fitness])
-        self.evolver.tell(told, {})
+        with blaming(self._evolver):
+            self.evolver.tell(told, {})
         self._note_members(told, [value is None for value in fitness])
         self._note_champion()
 
@@ -108,8 +148,10 @@ class Population:
 
     def state(self) -> dict[str, Any]:
         """Return everything needed to continue, as JSON values."""
+        with blaming(self._evolver):
+            evolver = self.evolver.state()
         return {
-            "evolver": self.evolver.state(),
+            "evolver": evolver,
             "rng": self.rng.bit_generator.state,
             "generation": self.generation,
             "diverged": [member.diverged for member in self.members],
@@ -134,10 +176,11 @@ class Population:
         self._champion = Member(**state["champion"]) if state["champion"] else None
 
     def _note_members(self, fitness: NDArray[np.float64], diverged: Sequence[bool]) -> None:
-        self.members = tuple(
-            attrs.evolve(member, fitness=float(value), diverged=failed)
-            for member, value, failed in zip(self.evolver.members(), fitness, diverged, strict=True)
-        )
+        with blaming(self._evolver):
+            self.members = tuple(
+                attrs.evolve(member, fitness=float(value), diverged=failed)
+                for member, value, failed in zip(self.evolver.members(), fitness, diverged, strict=True)
+            )
 
     def _note_champion(self) -> None:
         """Let the fittest challenge the champion at the champion's latest fitness (as the authors do)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -53,7 +54,7 @@ def resume(
     directory = Path(directory)
     overrides = layers_of({"executor.workers": workers})
     if is_finished(directory):
-        config = load_config(directory / CONFIG_FILE, overrides=overrides, plugins=plugins)
+        config = _configuration(directory, overrides, plugins)
         if load_run(directory).verification is None:
             verify_champion(config, directory)
         return load_run(directory)
@@ -95,7 +96,7 @@ def reopen(
     _refuse_other_directories(directory)
     lock = locked(directory)
     with released_on_error(lock):
-        config = load_config(directory / CONFIG_FILE, overrides=overrides, plugins=plugins)
+        config = _configuration(directory, overrides, plugins)
         saved = load_run(directory) if has_begun(directory) else None
         changes = _changes(directory, config, saved, allowed=allow_different_versions)
         coevolution = assemble(config)
@@ -114,8 +115,23 @@ def reopen(
 
 
 def _refuse_other_directories(directory: Path) -> None:
-    if not (directory / CONFIG_FILE).is_file():
+    path = directory / CONFIG_FILE
+    if not path.is_file():
         raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
+
+
+def _configuration(directory: Path, overrides: Sequence[Layer], plugins: Plugins | None) -> RunConfig:
+    """Return the configuration of a run, which is complete: it must not make us read other files."""
+    path = directory / CONFIG_FILE
+    try:
+        extends = tomllib.loads(path.read_text(encoding="utf-8")).get("extends")
+    except (OSError, ValueError, RecursionError):
+        extends = False  # load_config says what is wrong
+    if extends is not False:
+        raise InputError(
+            f"{path}: extends: a run's configuration is complete; expected false, found {extends!r}"
+        )
+    return load_config(path, overrides=overrides, plugins=plugins)
 
 
 def _changes(directory: Path, config: RunConfig, saved: Run | None, *, allowed: bool) -> list[str]:

@@ -15,7 +15,7 @@ import tomli_w
 
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
-from evoframe.errors import ConfigurationError, EvoframeError, InputError, RunError
+from evoframe.errors import ComponentError, ConfigurationError, EvoframeError, InputError, RunError
 from evoframe.evaluation import Evaluator
 from evoframe.exporting import exports
 from evoframe.layers import layers_of
@@ -198,10 +198,19 @@ class Execution:
         try:
             yield
         except RunError as error:
-            turn = self._coevolution.turn
-            saved = "no turn is saved" if turn < 0 else f"the turns before this are saved in {self.directory}"
             todo = f"to go on when that is mended: evoframe resume {self.directory}"
-            raise RunError(f"{error}\n  {saved}; {todo}") from error
+            raise RunError(
+                f"{self._in_full(error)}\n  what was saved before stays in {self.directory}; {todo}"
+            ) from error
+
+    def _in_full(self, error: RunError) -> str:
+        """Return the message of an error; of a component's, with all that is known of the component."""
+        chosen = dict(self.config.components()).get(getattr(error, "component", ""))
+        if not isinstance(error, ComponentError) or chosen is None:
+            return str(error)
+        turn = f"turn {self._store.last_turn + 1}"
+        about = ", ".join(part for part in (turn, error.concerns) if part)
+        return f"{error.component}: '{chosen.name}' (plugin {chosen.source}): {error.problem} ({about})"
 
     def verify(self) -> Verification | None:
         """Verify the champion of the completed run: see :func:`verify_champion`."""

@@ -16,7 +16,7 @@ import attrs
 
 from evoframe.champion import champion_document
 from evoframe.checksums import Checksums
-from evoframe.errors import InputError, RunError
+from evoframe.errors import ComponentError, InputError, RunError
 from evoframe.locking import Lock
 from evoframe.values import Design, Pair, PopulationReport, Turn
 
@@ -76,6 +76,7 @@ class Store:
         directory: The run's directory.
         simulation: What is needed to simulate the champion again, for its file.
         exports: Gives the champion as files of other programs: ending -> bytes, ``None`` for no file.
+        last_turn: The last turn that is saved; -1 if there is none.
     """
 
     directory: Path
@@ -84,6 +85,7 @@ class Store:
     _lock: Lock
     _database: sqlite3.Connection
     _checksums: Checksums = attrs.field(factory=Checksums, init=False)
+    last_turn: int = attrs.field(default=-1, init=False)
     _synced: float = attrs.field(factory=time.monotonic, init=False)
 
     @classmethod
@@ -118,6 +120,7 @@ class Store:
         """
         for table, saved in rows.items():
             self._checksums.add(table, saved)
+        self.last_turn = rows["workload"][-1][0] if rows["workload"] else -1
         with self._transaction():
             self._insert("resumes", [tuple(resume)])
 
@@ -139,7 +142,10 @@ class Store:
             self._insert("workload", [(turn.index, work.pairs, work.simulations, work.seconds)])
             if champion:
                 self._insert("best_pairs", [(turn.index, champion["score"], _json(champion))])
-            self._replace("state", [(part, turn.index, _json(values)) for part, values in state.items()])
+            self._replace(
+                "state", [(part, turn.index, _state(part, values)) for part, values in state.items()]
+            )
+        self.last_turn = turn.index
         if champion and turn.best_pair:
             self.save_champion(champion, turn.best_pair.design)
         self._synchronise()
@@ -236,6 +242,15 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 def _json(value: Any) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
+
+
+def _state(part: str, values: Any) -> str:
+    try:
+        return _json(values)
+    except (TypeError, ValueError, RecursionError) as error:
+        population = part.removeprefix("population/")
+        evolver = f"populations.{population}.evolver"
+        raise ComponentError(evolver, f"its state cannot be saved as JSON: {error}") from error
 
 
 def _opened(path: Path) -> sqlite3.Connection:

@@ -38,6 +38,15 @@ class Counting:
         return toys.Product(limit=100).simulate(designs, record)
 
 
+@attrs.frozen
+class Nameless(toys.Value):
+    """Cannot say what it sees."""
+
+    def score(self, outcome: Outcome) -> float:
+        del outcome
+        return float("nan")
+
+
 def evaluator(simulator: Any, workers: int = 1) -> Evaluator:
     return Evaluator(simulator, toys.Value(), Threads(workers=workers).start())
 
@@ -106,8 +115,8 @@ def test_a_diverged_simulation_has_its_step_and_no_value() -> None:
 
 
 def test_an_objective_that_gives_no_number_stops_the_run() -> None:
-    with pytest.raises(RunError, match="the objective gave the score nan"):
-        evaluator(Counting()).evaluate([design(float("nan"), 1)], 1)
+    with pytest.raises(RunError, match="objective: gave the score nan"):
+        attrs.evolve(evaluator(Counting()), objective=Nameless()).evaluate([design(1, 1)], 1)
 
 
 def test_a_design_cannot_be_changed_behind_the_cache() -> None:

@@ -297,7 +297,7 @@ def test_a_turn_and_its_state_are_saved_both_or_neither(
         return state(self) if len(calls) < 5 else {"not": float("nan")}
 
     monkeypatch.setattr(toys.DriftRun, "state", unsaveable)
-    with pytest.raises(ValueError, match="JSON compliant"):
+    with pytest.raises(RunError, match=r"'toy-drift' \(plugin .*\): its state .*turn 3"):
         run(toy_config(), out=tmp_path / "run")
     saved = load_run(tmp_path / "run")
     last = max(row["turn"] for row in saved.turns)

@@ -50,7 +50,8 @@ class TestExportedChampion:
     def test_is_written_in_every_format_beside_the_other(self, finished: Run) -> None:
         names = sorted(path.name for path in finished.directory.iterdir())
         assert names == [
-            "champion.json", "champion.toy", "champion.txt", "config.toml", "run.db", "run.lock", "verification.json",
+            "champion.json", "champion.toy", "champion.txt", "config.toml",
+            "run.db", "run.lock", "verification.json",
         ]  # fmt: skip
         roles = finished.champion.design.roles
         assert toy_design(finished.directory) == {role: array[0] for role, array in roles.items()}

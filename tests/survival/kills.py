@@ -1,8 +1,8 @@
 """Kills runs at random moments, resumes them, and compares what comes of it with undisturbed runs.
 
-``python tests/survival/kills.py --kills 500`` is the long form; the suite kills 50 times. A kill counts only if a
-turn was saved since the run was last started. Half of them come from outside at any moment, the others from within:
-between two statements of a transaction, or around the writing of a champion's file.
+``python tests/survival/kills.py --kills 500`` is the long form; the suite kills 50 times. A kill counts only
+if a turn was saved since the run was last started. Half of them come from outside at any moment, the others
+from within: between two statements of a transaction, or around the writing of a champion's file.
 
 Every attempt is a fork of this process, so that no time is lost with starting Python.
 """
@@ -79,7 +79,7 @@ def dies_at(call: int) -> None:
         return wrapper
 
     store: Any = evoframe.store.Store
-    store._write = dying(store._write, after=True)  # noqa: SLF001 - a fault, as a test may have one
+    store._write = dying(store._write, after=True)
     replace: Any = dying(Path.replace, after=call % 2 == 0)
     Path.replace = replace  # type: ignore[method-assign]
 
@@ -165,10 +165,11 @@ def main() -> None:
             compare(directory, Path(base) / f"undisturbed-{seed}", seed)
             turns += load_run(directory).summary["turns"]
             most, seed = max(most, kills), seed + 1
+    kills = counts["inside"] + counts["outside"]
     print(  # noqa: T201
-        f"{counts['inside'] + counts['outside']} kills after a saved turn ({counts['inside']} of them while "
-        f"something was being written), {counts['early']} before any; {seed - given.seed} runs of {turns} turns in "
-        f"all, at most {most} kills in one: all equal to undisturbed runs"
+        f"{kills} kills after a saved turn ({counts['inside']} of them while something was being written), "
+        f"{counts['early']} before any; {seed - given.seed} runs of {turns} turns in all, at most {most} "
+        "kills in one: all equal to undisturbed runs"
     )
 
 
