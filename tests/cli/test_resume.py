@@ -1,0 +1,148 @@
+"""``evoframe resume``, signals, and disks that take nothing more."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import toys
+from processes import Evoframe, python, surroundings
+from recorded import assert_same_result
+
+from evoframe import load_run
+
+_SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
+
+
+@contextlib.contextmanager
+def started(directory: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
+    """Start the program in the background; end it if the test does not."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "evoframe", *arguments],
+        cwd=directory,
+        env={**surroundings(), "PYTHONUNBUFFERED": "1"},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        if process.stderr:
+            process.stderr.close()
+
+
+def told(process: subprocess.Popen[str], words: str) -> str:
+    """Read what a process says up to the line with these words."""
+    assert process.stderr is not None
+    for line in process.stderr:
+        if words in line:
+            return line
+    raise AssertionError(f"ended without saying {words!r}")
+
+
+@pytest.fixture
+def toy(tmp_path: Path) -> list[str]:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    return ["-p", toys.__file__]
+
+
+def undisturbed(evoframe: Evoframe, toy: list[str], directory: Path) -> Path:
+    assert evoframe("run", *toy, "toy.toml", *_SLOW, "--out", "undisturbed").returncode == 0
+    return directory / "undisturbed"
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_goes_on_after_a_signal_that_stopped_it_after_its_turn(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path, number: signal.Signals, code: int
+) -> None:
+    with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOW, "--out", "left") as process:
+        told(process, "turn 0: a pair with the score")
+        process.send_signal(number)
+        told(process, "Stopping after this turn")
+        line = told(process, "Interrupted; all turns up to ")
+        assert line.rstrip().endswith("are saved in left; to go on: evoframe resume left")
+        assert process.wait(60) == code
+    resumed = evoframe("resume", *toy, "left")
+    assert resumed.returncode == 0, resumed.stderr
+    assert "best pair simulated" in resumed.stdout
+    assert_same_result(undisturbed(evoframe, toy, tmp_path), tmp_path / "left")
+
+
+def test_a_second_process_is_refused_and_the_first_goes_on(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOW, "--out", "left") as process:
+        told(process, "turn 0: a pair with the score")
+        second = evoframe("resume", *toy, "left")
+        assert second.returncode == 2
+        assert second.stderr.splitlines()[-1] == (
+            "Error: left: is being written by another process; wait until it has ended, or end it"
+        )
+        assert process.wait(60) == 0
+    assert_same_result(undisturbed(evoframe, toy, tmp_path), tmp_path / "left")
+
+
+def test_a_finished_run_is_said_to_be_finished(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
+    assert evoframe("run", *toy, "toy.toml", "--out", "here").returncode == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()}
+    again = evoframe("-q", "resume", *toy, "here")
+    assert (again.returncode, again.stderr) == (0, "here: is finished\n")
+    assert {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("directory", "message"),
+    [
+        ("nowhere", "Error: nowhere: is no run's directory: there is no config.toml"),
+        (".", "Error: .: is no run's directory: there is no config.toml"),
+    ],
+)
+def test_what_is_no_run_is_refused(evoframe: Evoframe, directory: str, message: str) -> None:
+    refused = evoframe("resume", directory)
+    assert (refused.returncode, refused.stderr.splitlines()[-1]) == (2, message)
+
+
+_FULL_DISK = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # what is beyond the limit is an error, as on a full disk
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
+from evoframe.cli import main
+main()
+"""
+
+
+@pytest.mark.parametrize("size", [0, 4_000, 60_000, 150_000])
+def test_a_full_disk_stops_the_run_and_it_goes_on_when_there_is_room(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path, size: int
+) -> None:
+    longer = ["--set", "run.generations=20"]
+    full = python(
+        "-c", _FULL_DISK, size, "run", *toy, "toy.toml", *longer, "--out", "left", directory=tmp_path
+    )
+    assert full.returncode in (1, 2), full.stderr
+    assert "Traceback" not in full.stderr
+    assert "left" in full.stderr.splitlines()[-1]
+    assert "cannot be written" in full.stderr
+    if not (tmp_path / "left" / "config.toml").exists():
+        return  # not even that could be written: there is nothing to go on with
+    resumed = evoframe("resume", *toy, "left")
+    assert resumed.returncode == 0, resumed.stderr
+    assert evoframe("run", *toy, "toy.toml", *longer, "--out", "undisturbed").returncode == 0
+    assert_same_result(tmp_path / "undisturbed", tmp_path / "left")
+    assert load_run(tmp_path / "left").finished
+
+
+def test_where_nothing_can_be_written_nothing_is_begun(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "file").touch()
+    refused = evoframe("run", *toy, "toy.toml", "--out", "file/run")
+    assert refused.returncode == 2
+    assert refused.stderr.splitlines()[-1] == "Error: file/run: cannot be used for a run: Not a directory"
