@@ -16,6 +16,7 @@ from evoframe.errors import (
     PluginError,
     PluginWarning,
     RunError,
+    WorkerError,
 )
 from evoframe.evaluation import Evaluator, Score
 from evoframe.hookspecs import hookimpl
@@ -103,6 +104,7 @@ __all__ = [
     "Turn",
     "Variant",
     "Verification",
+    "WorkerError",
     "Workload",
     "__version__",
     "assemble",

@@ -27,5 +27,5 @@ def blaming(component: str, concerns: str = "") -> Iterator[None]:
         yield
     except EvoframeError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise ComponentError(component, f"{type(error).__name__}: {error}", concerns) from error

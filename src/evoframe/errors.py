@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = [
     "ComponentError",
     "ConfigurationError",
@@ -10,6 +12,7 @@ __all__ = [
     "PluginError",
     "PluginWarning",
     "RunError",
+    "WorkerError",
 ]
 
 
@@ -59,6 +62,20 @@ class ComponentError(RunError):
     def __str__(self) -> str:
         about = f" ({self.concerns})" if self.concerns else ""
         return f"{self.component}: {self.problem}{about}"
+
+
+class WorkerError(RunError):
+    """A worker of an executor was lost with what it was doing.
+
+    Attributes:
+        problem: What happened, as the end of a sentence about what it was doing.
+        item: What it was doing.
+    """
+
+    def __init__(self, problem: str, item: Any) -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.item = item
 
 
 class PluginWarning(UserWarning):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import numbers
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -10,7 +11,7 @@ import attrs
 import numpy as np
 
 from evoframe.blame import blaming
-from evoframe.errors import ComponentError
+from evoframe.errors import ComponentError, WorkerError
 from evoframe.protocols import ExecutorRun, Objective, Simulator
 from evoframe.values import Design, Outcome, Record
 
@@ -61,13 +62,8 @@ class Evaluator:
             ComponentError: A component failed, or returned what it must not.
         """
         keys: list[bytes] = []
-        with blaming("executor"):
-            try:
-                results = list(self.workers.map(self._simulate, self._batches(designs, count, keys)))
-            except ComponentError as error:
-                error.places = tuple(keys.index(key) for key in error.keys if key in keys)
-                raise
-            for scores in results:
+        with blaming("executor"), _finding_places(keys):
+            for scores in self.workers.map(self._simulate, self._batches(designs, count, keys)):
                 self._cache |= scores
                 self.simulations += len(scores)
         if any(key not in self._cache for key in keys):
@@ -109,6 +105,24 @@ class Evaluator:
     @property
     def _simulate(self) -> _Simulation:
         return _Simulation(self.simulator, self.objective)
+
+
+@contextlib.contextmanager
+def _finding_places(keys: Sequence[bytes]) -> Iterator[None]:
+    """Say where the designs of a failed batch stand among all whose *keys* are given."""
+    try:
+        yield
+    except WorkerError as lost:
+        error = ComponentError("simulator", lost.problem)
+        error.places = _places(lost.item, keys)
+        raise error from lost
+    except ComponentError as error:
+        error.places = _places(error.keys, keys)
+        raise
+
+
+def _places(batch: Iterable[bytes], keys: Sequence[bytes]) -> tuple[int, ...]:
+    return tuple(keys.index(key) for key in batch if key in keys)
 
 
 @attrs.frozen

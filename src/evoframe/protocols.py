@@ -231,7 +231,11 @@ class ExecutorRun(Protocol):
         """How many items are worked on at once."""
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
-        """Return ``[function(item) for item in items]``; an exception of either is raised here."""
+        """Return ``[function(item) for item in items]``; an exception of either is raised here.
+
+        Raises:
+            WorkerError: The worker of an item was lost: it hung, or its process ended.
+        """
 
     def close(self) -> None:
         """Let the workers go."""

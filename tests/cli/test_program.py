@@ -10,12 +10,11 @@ import signal
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import toys
-from processes import Evoframe, surroundings
+from processes import Evoframe, started, surroundings, told
 
 import evoframe as package
 
@@ -36,30 +35,11 @@ def on_a_terminal(arguments: list[str], directory: Path) -> str:
     return shown.decode()
 
 
-@contextlib.contextmanager
-def slow_run(directory: Path, *settings: str) -> Iterator[subprocess.Popen[str]]:
-    """Start a run of toys that takes its time, and make sure that it ends."""
+def slow_run(directory: Path, *settings: str) -> contextlib.AbstractContextManager[subprocess.Popen[str]]:
+    """Start a run of toys that takes its time."""
     (directory / "toy.toml").write_text(toys.CONFIGURATION)
     options = [option for setting in settings for option in ("--set", setting)]
-    command = ["-m", "evoframe", "run", "-v", "-p", toys.__file__, "toy.toml", "--out", "here", *options]
-    with subprocess.Popen(
-        [sys.executable, *command], cwd=directory, env=surroundings(), stderr=subprocess.PIPE, text=True
-    ) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
-def read_until(process: subprocess.Popen[str], words: str) -> None:
-    """Read what a program says until it says these *words*."""
-    assert process.stderr is not None
-    said = []
-    for line in process.stderr:
-        said.append(line)
-        if words in line:
-            return
-    pytest.fail(f"the program ended without {words!r}: {said}")
+    return started(directory, "run", "-v", "-p", toys.__file__, "toy.toml", "--out", "here", *options)
 
 
 def test_says_its_version(evoframe: Evoframe) -> None:
@@ -272,9 +252,9 @@ class TestRun:
 
     def test_an_interrupt_of_the_verification_leaves_the_complete_run(self, tmp_path: Path) -> None:
         with slow_run(tmp_path, "simulator={name='toy-unverifiable', delay=3600.0}") as process:
-            read_until(process, "verifying the champion")
+            told(process, "verifying the champion")
             process.send_signal(signal.SIGINT)
-            read_until(process, "Interrupted; the run is complete and saved in here, but not verified")
+            told(process, "Interrupted; the run is complete and saved in here, but not verified")
             assert process.wait(60) == 130
         assert package.load_run(tmp_path / "here").summary["turns"] == 8
 
@@ -286,20 +266,20 @@ class TestRun:
 
     def test_interrupt_stops_after_the_turn_and_keeps_it(self, tmp_path: Path) -> None:
         with slow_run(tmp_path, "simulator={name='toy-slow', delay=0.2}", "run.generations=100") as process:
-            read_until(process, "turn 0: a pair with the score")
+            told(process, "turn 0: a pair with the score")
             process.send_signal(signal.SIGINT)
-            read_until(process, "Interrupted; all turns up to ")
+            told(process, "Interrupted; all turns up to ")
             assert process.wait(60) == 130
         turns = package.load_run(tmp_path / "here").turns
         assert 2 <= len(turns) < 200
 
     def test_a_second_interrupt_stops_at_once(self, tmp_path: Path) -> None:
         with slow_run(tmp_path, "simulator={name='toy-slow', delay=3600.0}") as process:
-            read_until(process, "toy, seed 3: 8 turns into here")
+            told(process, "toy, seed 3: 8 turns into here")
             process.send_signal(signal.SIGINT)
-            read_until(process, "press Ctrl-C again to stop at once")
+            told(process, "press Ctrl-C again to stop at once")
             process.send_signal(signal.SIGINT)
-            read_until(process, "Interrupted; no turn was finished in here")
+            told(process, "Interrupted; no turn was finished in here")
             assert process.wait(60) == 130
         assert package.load_run(tmp_path / "here").turns == []
 

@@ -2,49 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import signal
-import subprocess
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import toys
-from processes import Evoframe, python, surroundings
+from processes import Evoframe, python, started, told
 from recorded import assert_same_result
 
 from evoframe import load_run
 
 _SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
-
-
-@contextlib.contextmanager
-def started(directory: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """Start the program in the background; end it if the test does not."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "evoframe", *arguments],
-        cwd=directory,
-        env={**surroundings(), "PYTHONUNBUFFERED": "1"},
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.wait()
-        if process.stderr:
-            process.stderr.close()
-
-
-def told(process: subprocess.Popen[str], words: str) -> str:
-    """Read what a process says up to the line with these words."""
-    assert process.stderr is not None
-    for line in process.stderr:
-        if words in line:
-            return line
-    raise AssertionError(f"ended without saying {words!r}")
 
 
 @pytest.fixture

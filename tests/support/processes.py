@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 Evoframe = Callable[..., subprocess.CompletedProcess[str]]
@@ -33,3 +34,30 @@ def python(
         text=True,
         check=False,
     )
+
+
+@contextlib.contextmanager
+def started(directory: Path, *arguments: object) -> Iterator[subprocess.Popen[str]]:
+    """Start the program in the background; end it if the test does not."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "evoframe", *map(str, arguments)],
+        cwd=directory,
+        env=surroundings(),
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def told(process: subprocess.Popen[str], words: str) -> str:
+    """Read what a program says up to the line with these *words*, and return that line."""
+    assert process.stderr is not None
+    said = []
+    for line in process.stderr:
+        said.append(line)
+        if words in line:
+            return line
+    raise AssertionError(f"the program ended without {words!r}: {said}")

@@ -66,8 +66,9 @@ class ExecutorContract(ComponentContract[Executor]):
 
     def test_an_exception_is_raised_where_map_is_called(self) -> None:
         """That of the first item which fails, as if the items were worked on one by one."""
-        with self._started() as run, pytest.raises(ZeroDivisionError, match=r"^item 2$"):
+        with self._started() as run, pytest.raises(ZeroDivisionError) as caught:
             run.map(_fail_from_two_on, [0, 1, 2, 3, 4, 5])
+        assert str(caught.value) == "item 2"
 
     def test_workers_survive_an_exception(self) -> None:
         """The next items are worked on as ever."""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from evoframe import Executor, ExecutorRun
+from evoframe import Executor, ExecutorRun, WorkerError
 from evoframe.testing import ExecutorContract
-from evoframe_executors import Serial, Threads, evoframe_executors
+from evoframe_executors import Processes, Serial, Threads, evoframe_executors
 
 
 class TestSerial(ExecutorContract):
@@ -31,13 +31,25 @@ class TestManyThreads(ExecutorContract):
     component = Threads(workers=16)
 
 
+class TestOneWatchedThread(ExecutorContract):
+    component = Threads(workers=1, batch_time_limit=60.0)
+
+
+class TestTwoWatchedThreads(ExecutorContract):
+    component = Threads(workers=2, batch_time_limit=60.0)
+
+
 def test_the_names_are_those_of_the_configuration() -> None:
-    assert dict(evoframe_executors()) == {"serial": Serial, "threads": Threads}
+    assert dict(evoframe_executors()) == {
+        "processes": Processes,
+        "serial": Serial,
+        "threads": Threads,
+    }
 
 
-@pytest.fixture
-def two_threads() -> Iterator[ExecutorRun]:
-    run = Threads(workers=2).start()
+@pytest.fixture(params=[Threads(workers=2), Threads(workers=2, batch_time_limit=60.0)], ids=["", "watched"])
+def two_threads(request: pytest.FixtureRequest) -> Iterator[ExecutorRun]:
+    run: ExecutorRun = request.param.start()
     yield run
     run.close()
 
@@ -178,26 +190,74 @@ def test_what_failed_before_an_item_that_cannot_be_made_is_raised(two_threads: E
         two_threads.map(slow_failure, items())
 
 
-@pytest.mark.parametrize("place", ["items", "function"])
-def test_an_interrupt_of_the_caller_drops_the_rest(two_threads: ExecutorRun, place: str) -> None:
-    caller, begun = threading.get_ident(), []
+def test_an_interrupt_while_items_are_made_drops_the_rest(two_threads: ExecutorRun) -> None:
+    begun = []
 
     def work(item: int) -> None:
         begun.append(item)
         time.sleep(0.02)
-        if place == "function" and threading.get_ident() == caller:
-            raise KeyboardInterrupt
 
     def items() -> Iterator[int]:
         yield from range(1000)
-        if place == "items":
-            raise KeyboardInterrupt
+        raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         two_threads.map(work, items())
     assert len(begun) < 100
 
 
+def test_an_interrupt_while_the_caller_helps_drops_the_rest() -> None:
+    caller, begun = threading.get_ident(), []
+
+    def work(item: int) -> None:
+        begun.append(item)
+        time.sleep(0.02)
+        if threading.get_ident() == caller:
+            raise KeyboardInterrupt
+
+    run = Threads(workers=2).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run.map(work, range(1000))
+    finally:
+        run.close()
+    assert len(begun) < 100
+
+
 def test_a_negative_number_of_workers_is_refused() -> None:
     with pytest.raises(ValueError, match="'workers' must be >= 0: -1"):
         Threads(workers=-1)
+
+
+@pytest.mark.parametrize("limit", [0.0, -1.0, float("nan")])
+@pytest.mark.parametrize("executor", [Processes, Threads])
+def test_a_time_limit_is_positive(executor: type[Processes] | type[Threads], limit: float) -> None:
+    with pytest.raises(ValueError, match="'batch_time_limit' must be > 0"):
+        executor(batch_time_limit=limit)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_thread_that_hangs_is_reported_and_left_alone(workers: int) -> None:
+    mended = threading.Event()
+    run = Threads(workers=workers, batch_time_limit=0.2).start()
+
+    def work(item: int) -> None:
+        if item == 3:
+            mended.wait(60)
+
+    try:
+        message = r"^took longer than executor\.batch_time_limit = 0\.2 seconds$"
+        with pytest.raises(WorkerError, match=message) as caught:
+            run.map(work, range(10))
+        assert caught.value.item == 3
+    finally:
+        run.close()
+        mended.set()
+
+
+def test_time_counts_from_when_a_thread_begins() -> None:
+    run = Threads(workers=1, batch_time_limit=0.5).start()
+    try:
+        assert run.map(lambda _: time.sleep(0.1), range(10)) == [None] * 10
+    finally:
+        run.close()

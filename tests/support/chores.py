@@ -1,0 +1,96 @@
+"""What workers are given to do; they import it, wherever they are."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+
+def square(item: int) -> int:
+    return item * item
+
+
+def process(_: object) -> int:
+    return os.getpid()
+
+
+def hang(item: object) -> object:
+    """Do nothing at all, for as long as no test lasts; but -1 is done."""
+    if item != -1:
+        time.sleep(3600)
+    return item
+
+
+def hang_once(marker: Path) -> str:
+    if not marker.exists():
+        marker.touch()
+        time.sleep(3600)
+    return "done"
+
+
+def end_process(code: int) -> int:
+    """End the worker's process: with an exit code, or for a negative number by a signal; but 0 is done."""
+    if code > 0:
+        os._exit(code)
+    if code < 0:
+        os.kill(os.getpid(), -code)
+        signal.pause()
+    return code
+
+
+def end_process_once(marker: Path) -> str:
+    if not marker.exists():
+        marker.touch()
+        os._exit(3)
+    return "done"
+
+
+def fail(item: int) -> int:
+    """Fail for all but 0: in a way that can be made again from its arguments, or in one that cannot."""
+    if item == 1:
+        raise ZeroDivisionError("item 1")
+    if item == 2:
+        raise UnusualError("item", 2)
+    if item == 3:
+        sys.exit("item 3")
+    return item
+
+
+class UnusualError(Exception):
+    def __init__(self, what: str, number: int) -> None:
+        super().__init__(f"{what} {number}")
+
+
+def give_a_lock(_: object) -> object:
+    return threading.Lock()
+
+
+def write_process_and_hang(path: Path) -> None:
+    path.write_text(str(os.getpid()))
+    time.sleep(3600)
+
+
+def mark(path: Path | None) -> None:
+    time.sleep(0.05)
+    if path is None:
+        raise FileNotFoundError
+    path.touch()
+
+
+class UnknownElsewhere:
+    """Travels, and arrives where nobody knows it."""
+
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+        return (known_here_only, (os.getpid(),))
+
+
+def known_here_only(process: int) -> int:
+    if os.getpid() != process:
+        raise ModuleNotFoundError("No module named 'my_simulator'")
+    return process
