@@ -13,6 +13,7 @@ from recorded import assert_same_result
 from evoframe import load_run
 
 _SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
+_HANGING = ("--set", "simulator={name='toy-hanging', mended='mended'}")
 
 
 @pytest.fixture
@@ -114,3 +115,25 @@ def test_where_nothing_can_be_written_nothing_is_begun(
     refused = evoframe("run", *toy, "toy.toml", "--out", "file/run")
     assert refused.returncode == 2
     assert refused.stderr.splitlines()[-1] == "Error: file/run: cannot be used for a run: Not a directory"
+
+
+def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    executor = ["--set", "executor={name='threads', batch_time_limit=0.5}"]
+    hung = evoframe("run", *toy, "toy.toml", *_HANGING, *executor, "--out", "left")
+    assert hung.returncode == 1
+    message, todo = hung.stderr.splitlines()[-2:]
+    assert message.startswith(
+        "Error: simulator: 'toy-hanging' (plugin 'toys' of toys local): took longer than "
+    )
+    assert todo.endswith("stays in left; to go on when that is mended: evoframe resume left")
+    (tmp_path / "mended").touch()
+    assert evoframe("resume", *toy, "left").returncode == 0
+
+
+def test_processes_cannot_import_a_plugin_of_a_file(evoframe: Evoframe, toy: list[str]) -> None:
+    refused = evoframe("run", *toy, "toy.toml", "--set", "executor='processes'", "--out", "left")
+    assert refused.returncode == 1
+    assert "Error: executor 'processes': a worker does not know what it shall do: Mod" in refused.stderr
+    assert "Traceback" not in refused.stderr

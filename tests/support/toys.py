@@ -217,6 +217,24 @@ class Slow(Product):
 
 
 @attrs.frozen
+class Hanging(Product):
+    """Hangs where numbers are large and a file is missing, which it may make itself."""
+
+    beyond: float = 0.1
+    mended: str = ""
+    once: bool = False
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        outcomes = super().simulate(designs, record)
+        large = any(abs(float(outcome.tracks["value"][0, 0])) > self.beyond for outcome in outcomes)
+        if large and not Path(self.mended).exists():
+            if self.once:
+                Path(self.mended).touch()
+            time.sleep(3600)
+        return outcomes
+
+
+@attrs.frozen
 class Varied(Product):
     """Has all that a simulator may offer: files to read and to write, and variants.
 
@@ -360,6 +378,7 @@ def evoframe_simulators() -> Mapping[str, type[Any]]:
     return {
         "toy-product": Product,
         "toy-slow": Slow,
+        "toy-hanging": Hanging,
         "toy-varied": Varied,
         "toy-fitting": Fitting,
         "toy-demanding": Demanding,
