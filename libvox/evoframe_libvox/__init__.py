@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from evoframe_libvox._vox import ffi, lib
 
-__all__ = ["FIX_ALL", "KERNELS", "Material", "Model", "Result", "Settings", "Track"]
+__all__ = ["COMPILER", "FIX_ALL", "KERNELS", "Material", "Model", "Result", "Settings", "Track"]
 
 
 def _kernels() -> Iterator[tuple[str, int]]:
@@ -33,6 +33,9 @@ _NUMBERS: Final = dict(_kernels())
 KERNELS: Final = tuple(_NUMBERS)
 """Names of what can compute on this processor, the fastest last. ``scalar`` is the reference, one
 bond after the other. The others are one program for several instruction sets, with the same bits."""
+
+COMPILER: Final[str] = ffi.string(lib.vox_compiler()).decode()
+"""Name and version of the compiler that made the library."""
 
 FIX_ALL: Final = 63
 """All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its

@@ -189,6 +189,9 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
 /* Name of a kernel, from number 1 up, the fastest last: empty if this processor cannot use it, NULL after the last. */
 const char *vox_kernel_name(int32_t number);
 
+/* Name and version of the compiler that made this library; never NULL. */
+const char *vox_compiler(void);
+
 /* A sentence without a full stop; never NULL. */
 const char *vox_status_message(enum vox_status status);
 

@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 FORMAT = 1
-"""Version of the champion's document and of the run directory."""
+"""Version of the champion's document; that of the run directory is another."""
 
 _DTYPES = (
     *("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sqlite3
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -170,6 +170,11 @@ class Run:
     def _verify_again(self) -> str:
         return f"to make it anew: evoframe verify {self.directory}"
 
+    def damage(self) -> list[str]:
+        """Return what SQLite finds wrong with the database's pages, tables and indices."""
+        with _reading(self._database) as database:
+            return [row[0] for row in database.execute("PRAGMA integrity_check") if row[0] != "ok"]
+
     def table(self, name: str) -> list[dict[str, Any]]:
         """Return the rows of a table of the database, in the order of their keys.
 
@@ -190,20 +195,17 @@ class Run:
     def _read(self, name: str) -> tuple[list[str], list[tuple[Any, ...]]]:
         """Return the columns and rows of a table, whose checksum was compared."""
         path = self._database
-        try:
-            with contextlib.closing(_open(path)) as database:
-                database.execute("BEGIN")  # rows and checksums of one moment
-                tables = _tables(database)
-                if name not in tables:
-                    known = ", ".join(sorted(tables))
-                    raise InputError(f"{path}: has no table '{name}'; tables: {known}")
-                found = database.execute(f'SELECT * FROM "{name}"')  # noqa: S608
-                columns, rows = [column[0] for column in found.description], found.fetchall()
-                if name in (*CHAINED, *SINGLE):
-                    _compare_checksums(path, name, rows, _checksums(database))
-                return columns, rows
-        except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
-            raise InputError(f"{path}: cannot be read: {error}") from error
+        with _reading(path) as database:
+            database.execute("BEGIN")  # rows and checksums of one moment
+            tables = _tables(database)
+            if name not in tables:
+                known = ", ".join(sorted(tables))
+                raise InputError(f"{path}: has no table '{name}'; tables: {known}")
+            found = database.execute(f'SELECT * FROM "{name}"')  # noqa: S608
+            columns, rows = [column[0] for column in found.description], found.fetchall()
+            if name in (*CHAINED, *SINGLE):
+                _compare_checksums(path, name, rows, _checksums(database))
+            return columns, rows
 
 
 def load_run(directory: str | Path) -> Run:
@@ -235,11 +237,8 @@ def has_begun(directory: Path) -> bool:
     path = directory / DATABASE_FILE
     if not path.is_file():
         return False
-    try:
-        with contextlib.closing(_open(path)) as database:
-            return bool(_tables(database))
-    except sqlite3.Error as error:
-        raise InputError(f"{path}: cannot be read: {error}") from error
+    with _reading(path) as database:
+        return bool(_tables(database))
 
 
 _SETTLED = ("format", "configuration")  # keys of meta that stand there from the beginning
@@ -248,12 +247,9 @@ _SETTLED = ("format", "configuration")  # keys of meta that stand there from the
 def _refuse_other_databases(directory: Path, config: Mapping[str, Any]) -> None:
     """Look at the format first, since another may have other tables; beside ours there is nothing else."""
     path = directory / DATABASE_FILE
-    try:
-        with contextlib.closing(_open(path)) as database:
-            found = [row[0] for row in database.execute("SELECT value FROM meta WHERE key = 'format'")]
-            statements = [row[0] for row in database.execute("SELECT sql FROM sqlite_master")]
-    except sqlite3.Error as error:
-        raise InputError(f"{path}: cannot be read: {error}") from error
+    with _reading(path) as database:
+        found = [row[0] for row in database.execute("SELECT value FROM meta WHERE key = 'format'")]
+        statements = [row[0] for row in database.execute("SELECT sql FROM sqlite_master")]
     if found != [str(RUN_FORMAT)]:
         what = f"the format {found[0]!r}" if found else "no format"
         raise InputError(
@@ -265,15 +261,24 @@ def _refuse_other_databases(directory: Path, config: Mapping[str, Any]) -> None:
         raise InputError(f"{path}: is damaged: its tables are not those of a run with this {CONFIG_FILE}")
 
 
-def _open(path: Path) -> sqlite3.Connection:
-    """Open a database that may come from anyone: nothing in it is trusted, and nothing is written."""
+@contextlib.contextmanager
+def _reading(path: Path) -> Iterator[sqlite3.Connection]:
+    """Open a database that may come from anyone: nothing in it is trusted, and nothing is written.
+
+    Raises:
+        InputError: It cannot be read.
+    """
     if not path.is_file():
         raise InputError(f"{path}: there is no such file")
-    database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, isolation_level=None)
-    database.execute("PRAGMA trusted_schema = OFF")
-    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST_TEXT)
-    database.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
-    return database
+    address = f"{path.absolute().as_uri()}?mode=ro"
+    try:
+        with contextlib.closing(sqlite3.connect(address, uri=True, isolation_level=None)) as database:
+            database.execute("PRAGMA trusted_schema = OFF")
+            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST_TEXT)
+            database.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
+            yield database
+    except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from error
 
 
 def _tables(database: sqlite3.Connection) -> list[str]:

@@ -23,7 +23,7 @@ from evoframe.resolve import load_config
 from evoframe.run import Execution, assemble, opened_store, verify_champion
 from evoframe.store import CONFIG_FILE, Store
 
-__all__ = ["is_finished", "reopen", "resume"]
+__all__ = ["configuration_of", "is_finished", "refuse_other_directories", "reopen", "restore", "resume"]
 
 
 def resume(
@@ -54,7 +54,7 @@ def resume(
     directory = Path(directory)
     overrides = layers_of({"executor.workers": workers})
     if is_finished(directory):
-        config = _configuration(directory, overrides, plugins)
+        config = configuration_of(directory, overrides, plugins)
         if load_run(directory).verification is None:
             verify_champion(config, directory)
         return load_run(directory)
@@ -70,13 +70,13 @@ def is_finished(directory: Path) -> bool:
     Raises:
         InputError: It is no run's directory, or damaged.
     """
-    _refuse_other_directories(directory)
+    refuse_other_directories(directory)
     return has_begun(directory) and load_run(directory).finished
 
 
 def reopen(
     directory: Path,
-    overrides: Sequence[Layer] = (),
+    overrides: Sequence[str | Layer] = (),
     plugins: Plugins | None = None,
     *,
     allow_different_versions: bool = False,
@@ -93,16 +93,16 @@ def reopen(
         ConfigurationError: As :func:`resume`.
         InputError: As :func:`resume`.
     """
-    _refuse_other_directories(directory)
+    refuse_other_directories(directory)
     lock = locked(directory)
     with released_on_error(lock):
-        config = _configuration(directory, overrides, plugins)
+        config = configuration_of(directory, overrides, plugins)
         saved = load_run(directory) if has_begun(directory) else None
         changes = _changes(directory, config, saved, allowed=allow_different_versions)
         coevolution = assemble(config)
         try:
             if saved is not None:
-                _restore(coevolution, saved)
+                restore(coevolution, saved)
             store = opened_store(directory, config, lock)
             if saved is None:  # killed before its first transaction
                 store.begin(list(config.populations), config.deciding())
@@ -114,14 +114,29 @@ def reopen(
         return Execution(config, directory, coevolution, store)
 
 
-def _refuse_other_directories(directory: Path) -> None:
+def refuse_other_directories(directory: Path) -> None:
+    """Make sure that a directory is that of a run.
+
+    Raises:
+        InputError: It is not.
+    """
     path = directory / CONFIG_FILE
     if not path.is_file():
         raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
 
 
-def _configuration(directory: Path, overrides: Sequence[Layer], plugins: Plugins | None) -> RunConfig:
-    """Return the configuration of a run, which is complete: it must not make us read other files."""
+def configuration_of(directory: Path, overrides: Sequence[str | Layer], plugins: Plugins | None) -> RunConfig:
+    """Return the configuration of a run, which is complete: it must not make us read other files.
+
+    Args:
+        directory: The run's directory.
+        overrides: Settings of the executor.
+        plugins: The plugins to choose from.
+
+    Raises:
+        ConfigurationError: It cannot be accepted.
+        InputError: It is not complete.
+    """
     path = directory / CONFIG_FILE
     try:
         extends = tomllib.loads(path.read_text(encoding="utf-8")).get("extends")
@@ -159,7 +174,7 @@ def _listed(message: str, lines: Sequence[str]) -> str:
     return "\n  ".join([f"{message}:", *lines])
 
 
-def _restore(coevolution: Coevolution, saved: Run) -> None:
+def restore(coevolution: Coevolution, saved: Run) -> None:
     """Bring the loop to the end of the last turn.
 
     Raises:

@@ -254,8 +254,8 @@ class Vox:
         return Export(write_vxa(self, material, phase, acting), left_out(self))
 
     def provenance(self) -> dict[str, str]:
-        """Return the kernel that computes."""
-        return {"libvox kernel": model_of(self, (1, 1, 1)).kernel}
+        """Return the kernel that computes, and the compiler that made it."""
+        return {"libvox kernel": model_of(self, (1, 1, 1)).kernel, "libvox compiler": libvox.COMPILER}
 
     @classmethod
     def _as_in(cls, file: VxaFile) -> Vox:

@@ -12,6 +12,7 @@ from evoframe._version import __version__
 from evoframe.cli.completion import completion
 from evoframe.cli.config import config
 from evoframe.cli.context import common_options, plugins_of
+from evoframe.cli.doctor import doctor
 from evoframe.cli.export import export
 from evoframe.cli.plugins import plugins
 from evoframe.cli.resume import resume
@@ -75,6 +76,7 @@ Examples:
   evoframe verify runs/paper-1                is its champion real?
   evoframe export runs/paper-1 --to vxa
   evoframe plugins list
+  evoframe doctor                             is everything in order?
 """
 
 
@@ -93,7 +95,7 @@ def cli() -> None:
     """
 
 
-for command in (completion, config, export, plugins, resume, run, simulate, verify):
+for command in (completion, config, doctor, export, plugins, resume, run, simulate, verify):
     cli.add_command(command)
 
 

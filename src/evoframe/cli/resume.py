@@ -6,13 +6,11 @@ from pathlib import Path
 
 import click
 
-from evoframe.cli.context import common_options, plugins_of, workers_option
+from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
 from evoframe.cli.playing import play, show_end
 from evoframe.layers import Layer
 from evoframe.loading import load_run
-from evoframe.resolve import load_config
-from evoframe.resuming import is_finished, reopen
-from evoframe.store import CONFIG_FILE
+from evoframe.resuming import configuration_of, is_finished, reopen
 
 __all__ = ["resume"]
 
@@ -20,6 +18,7 @@ _EPILOG = """\b
 Examples:
   evoframe resume runs/paper-1
   evoframe resume runs/paper-1 --workers 4
+  evoframe resume runs/paper-1 --set "executor={name='processes', batch_time_limit=60.0}"
 """
 
 
@@ -30,20 +29,29 @@ Examples:
     is_flag=True,
     help="Go on although versions or the machine have changed since the run began; the run notes it.",
 )
+@set_option
 @workers_option
 @common_options
 @click.pass_context
-def resume(ctx: click.Context, directory: Path, allow_different_versions: bool, workers: list[Layer]) -> None:
+def resume(
+    ctx: click.Context,
+    directory: Path,
+    allow_different_versions: bool,
+    overrides: tuple[str, ...],
+    workers: list[Layer],
+) -> None:
     """Go on with a run that was interrupted, from its last complete turn.
 
     RUN is the run's directory. The result is the same, bit for bit, as if the run had never been
     interrupted, whatever the number of workers. What is not as when the run began (its configuration,
-    versions, the type of machine) is named, and the run does not go on.
+    versions, the type of machine) is named, and the run does not go on; only settings of the executor may
+    be others.
     """
+    plugins = plugins_of(ctx)
+    settings: list[str | Layer] = [*overrides, *workers]
     if is_finished(directory):
         click.echo(f"{directory}: is finished", err=True)
         if load_run(directory).verification is None:
-            config = load_config(directory / CONFIG_FILE, overrides=workers, plugins=plugins_of(ctx))
-            show_end(ctx, config, directory)
+            show_end(ctx, configuration_of(directory, settings, plugins), directory)
         return
-    play(ctx, reopen(directory, workers, plugins_of(ctx), allow_different_versions=allow_different_versions))
+    play(ctx, reopen(directory, settings, plugins, allow_different_versions=allow_different_versions))

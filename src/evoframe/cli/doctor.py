@@ -1,0 +1,63 @@
+"""``evoframe doctor``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import attrs
+import click
+from rich.table import Table
+from rich.text import Text
+
+from evoframe.cli.context import common_options, output, plugins_of
+from evoframe.doctor import Check, State, check_installation, check_run
+
+__all__ = ["doctor"]
+
+_EPILOG = """\b
+Examples:
+  evoframe doctor                             is the installation in order?
+  evoframe doctor runs/paper-1                is that run?
+  evoframe doctor runs/* --json
+"""
+
+_STYLES: dict[State, str] = {"ok": "green", "note": "yellow", "problem": "bold red"}
+
+
+@click.command(epilog=_EPILOG)
+@click.argument("directories", metavar="[RUN]...", nargs=-1, type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@common_options
+@click.pass_context
+def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> None:
+    """Look whether everything is in order: the installation, or the directories of runs.
+
+    Of an installation: the plugins, versions, the kernel of the solver, and a few simulations. Of a run: its
+    database, whether its turns are complete, whether it can go on, and whether its champion scores again what
+    it scored then, to the last digit. Nothing is changed. The exit code is 1 if there is a problem.
+    """
+    found = plugins_of(ctx)
+    checks = {str(directory): list(check_run(directory, found)) for directory in directories}
+    if not directories:
+        checks["installation"] = list(check_installation(found))
+    if as_json:
+        documents = {name: [attrs.asdict(check) for check in listed] for name, listed in checks.items()}
+        click.echo(json.dumps(documents, indent=2))
+    else:
+        for name, listed in checks.items():
+            _print(name, listed)
+    if any(check.state == "problem" for listed in checks.values() for check in listed):
+        ctx.exit(1)
+
+
+def _print(name: str, checks: list[Check]) -> None:
+    console = output()
+    console.print(name, style="bold", soft_wrap=True)
+    table = Table(box=None, show_header=False)
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for check in checks:
+        table.add_row(Text(check.state, _STYLES[check.state]), check.subject, check.finding)
+    console.print(table)
