@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe.errors import InputError, RunError
+from evoframe.files import read_text
 from evoframe.values import BestPair, Design
 
 __all__ = [
     "FORMAT",
+    "LARGEST_DOCUMENT",
     "champion_document",
     "champion_from_json",
     "design_from_json",
@@ -26,6 +28,9 @@ __all__ = [
 
 FORMAT = 1
 """Version of the champion's document; that of the run directory is another."""
+
+LARGEST_DOCUMENT = 64
+"""MiB; a design or a state of this size is none of ours."""
 
 _DTYPES = (
     *("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"),
@@ -103,10 +108,9 @@ def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
     Raises:
         InputError: The file cannot be read, or is no champion.
     """
+    text = read_text(path, LARGEST_DOCUMENT)
     try:
-        return champion_from_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        return champion_from_json(text)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
 

@@ -11,6 +11,7 @@ from typing import Any, Self, TypeAlias
 
 import attrs
 import numpy as np
+from attrs.validators import ge
 from numpy.typing import NDArray
 
 from evoframe.blame import blaming
@@ -18,6 +19,7 @@ from evoframe.errors import ComponentError
 from evoframe.evaluation import Evaluator, Score
 from evoframe.population import Population
 from evoframe.protocols import Aggregator, CollaborationStrategy
+from evoframe.structuring import structure
 from evoframe.values import BestPair, Design, Pair, Scores, Turn, Workload
 
 __all__ = ["Coevolution"]
@@ -94,19 +96,21 @@ class Coevolution:
         Args:
             changed: The populations whose state is wanted; by default all.
         """
-        loop = {
-            "turn": self.turn,
-            "best_score": self.best_score,
-            "fittest_have_met": self._fittest_have_met,
-        }
+        loop = attrs.asdict(_Loop(self.turn, self.best_score, self._fittest_have_met))
         wanted = [p for p in self.populations if changed is None or p.name in changed]
         return {"loop": loop, **{f"population/{p.name}": p.state() for p in wanted}}
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Continue from what :meth:`state` returned, bit for bit as if never interrupted."""
-        loop = state["loop"]
-        self.turn, self.best_score = loop["turn"], loop["best_score"]
-        self._fittest_have_met = loop["fittest_have_met"]
+        """Continue from what :meth:`state` returned, bit for bit as if never interrupted.
+
+        Raises:
+            KeyError: A part is missing.
+            StructureError: A part is no such state; says where.
+            ValueError: An evolver or a random stream says so.
+        """
+        loop = structure(state["loop"], _Loop, ("loop",))
+        self.turn, self.best_score = loop.turn, loop.best_score
+        self._fittest_have_met = loop.fittest_have_met
         for population in self.populations:
             population.restore(state[f"population/{population.name}"])
 
@@ -254,6 +258,15 @@ class Coevolution:
             genomes={population.name: population.dump(i) for population, i in chosen},
             design=design,
         )
+
+
+@attrs.frozen
+class _Loop:
+    """The part of the state that belongs to no population."""
+
+    turn: int = attrs.field(validator=ge(-1))
+    best_score: float | None
+    fittest_have_met: bool
 
 
 def _arithmetic_mean(scores: Scores) -> float:

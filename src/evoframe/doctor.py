@@ -15,12 +15,12 @@ from evoframe.checksums import CHAINED, SINGLE
 from evoframe.config import RunConfig
 from evoframe.errors import EvoframeError, InputError
 from evoframe.evaluation import simulated
-from evoframe.loading import Run, load_run
+from evoframe.loading import Run, load_run, run_tables
 from evoframe.locking import LOCK_FILE, locked
 from evoframe.plugins import Plugins
 from evoframe.provenance import differences, provenance
 from evoframe.resolve import load_config
-from evoframe.resuming import configuration_of, refuse_other_directories, restore
+from evoframe.resuming import configuration_of, restore
 from evoframe.run import assemble
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
@@ -60,7 +60,7 @@ def check_run(directory: Path, plugins: Plugins) -> Iterator[Check]:
     Raises:
         InputError: It is no run's directory, or another process is writing to it.
     """
-    refuse_other_directories(directory)
+    run_tables(directory)
     with _undisturbed(directory):
         yield from _check_files(directory, plugins)
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import attrs
 
-from evoframe.errors import ConfigurationError
+from evoframe.errors import ConfigurationError, InputError
+from evoframe.files import read_text
 from evoframe.plugins import suggestion
 
 __all__ = [
@@ -42,7 +43,7 @@ POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "ev
 
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
-_LARGEST_FILE = 2**24  # bytes
+_LARGEST_FILE = 16  # MiB
 _DEEPEST = 32  # tables and lists within each other; no option needs a quarter of that
 
 
@@ -179,23 +180,9 @@ def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
             "a file needs the ending .toml"
         )
     try:
-        return str(path), _text(path), path.parent
-    except OSError as error:
-        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ConfigurationError(f"{path}: not valid TOML: it is not UTF-8 text") from error
-    except ValueError as error:  # a name that no file can have
-        raise ConfigurationError(f"{str(path)!r}: cannot be read: {error}") from error
-
-
-def _text(path: Path) -> str:
-    with path.open("rb") as file:
-        content = file.read(_LARGEST_FILE + 1)
-    if len(content) > _LARGEST_FILE:
-        raise ConfigurationError(
-            f"{path}: is larger than {_LARGEST_FILE >> 20} MiB; that is no configuration"
-        )
-    return content.decode("utf-8")
+        return str(path), read_text(path, _LARGEST_FILE), path.parent
+    except InputError as error:
+        raise ConfigurationError(str(error)) from error
 
 
 def _override(text: str) -> Layer:

@@ -11,16 +11,15 @@ from typing import Any
 
 import attrs
 
-from evoframe.champion import champion_from_json, parsed_json
+from evoframe.champion import LARGEST_DOCUMENT, champion_from_json, parsed_json
 from evoframe.checksums import CHAINED, SINGLE, Checksums
 from evoframe.errors import InputError
+from evoframe.files import read_text, refuse_links
 from evoframe.store import CONFIG_FILE, DATABASE_FILE, RUN_FORMAT, schema
 from evoframe.values import Design
 from evoframe.verification import VERIFICATION_FILE, Verification, verification_from_json
 
-__all__ = ["Champion", "Run", "has_begun", "load_run"]
-
-_LONGEST_TEXT = 2**26  # bytes; a design or a state of this size is none of ours
+__all__ = ["Champion", "Run", "has_begun", "load_run", "run_tables"]
 
 
 @attrs.frozen(eq=False)
@@ -154,12 +153,11 @@ class Run:
             InputError: The file is damaged, or is about another champion.
         """
         path = self.directory / VERIFICATION_FILE
-        try:
-            verification = verification_from_json(parsed_json(path.read_text(encoding="utf-8")))
-        except FileNotFoundError:
+        if not path.exists():
             return None
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        text = read_text(path, LARGEST_DOCUMENT)
+        try:
+            verification = verification_from_json(parsed_json(text))
         except ValueError as error:
             raise InputError(f"{path}: {error}; {self._verify_again}") from error
         if verification.score != self.champion.score:
@@ -215,17 +213,34 @@ def load_run(directory: str | Path) -> Run:
         InputError: It is no run's directory, or one of another format.
     """
     directory = Path(directory)
-    path = directory / CONFIG_FILE
-    try:
-        config = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{directory}: is no run's directory: {path.name}: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not valid TOML: {error}") from error
+    config = run_tables(directory)
     _refuse_other_databases(directory, config)
     run = Run(directory, config)
     run.table("meta")
     return run
+
+
+def run_tables(directory: Path) -> dict[str, Any]:
+    """Return the tables of a run's configuration, which is complete: it must not make us read other files.
+
+    Raises:
+        InputError: It is no run's directory, or has something in it that no run has.
+    """
+    path = directory / CONFIG_FILE
+    refuse_links(directory)
+    if not path.is_file():
+        raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
+    text = read_text(path, LARGEST_DOCUMENT)
+    try:
+        tables = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from error
+    if tables.get("extends") is not False:
+        found = tables.get("extends")
+        raise InputError(
+            f"{path}: extends: a run's configuration is complete; expected false, found {found!r}"
+        )
+    return tables
 
 
 def has_begun(directory: Path) -> bool:
@@ -274,7 +289,7 @@ def _reading(path: Path) -> Iterator[sqlite3.Connection]:
     try:
         with contextlib.closing(sqlite3.connect(address, uri=True, isolation_level=None)) as database:
             database.execute("PRAGMA trusted_schema = OFF")
-            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST_TEXT)
+            database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_DOCUMENT << 20)
             database.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
             yield database
     except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:

@@ -8,11 +8,13 @@ from typing import Any
 
 import attrs
 import numpy as np
+from attrs.validators import ge
 from numpy.typing import NDArray
 
 from evoframe.blame import blaming
 from evoframe.errors import ComponentError, RunError
 from evoframe.protocols import Encoder, EvolverRun, Network
+from evoframe.structuring import structure
 from evoframe.values import Design, Member, PopulationReport
 
 __all__ = ["Population"]
@@ -160,20 +162,24 @@ class Population:
             "champion": attrs.asdict(self._champion) if self._champion else None,
         }
 
-    def restore(self, state: dict[str, Any]) -> None:
-        """Continue from what :meth:`state` returned."""
-        self.evolver.restore(state["evolver"])
-        self.rng.bit_generator.state = state["rng"]
-        self.generation = state["generation"]
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Raises:
+            StructureError: It is no such state; says where.
+            ValueError: The evolver or a random stream says so.
+        """
+        saved = structure(state, _Saved, (self.name,))
+        self.evolver.restore(saved.evolver)
+        self.rng.bit_generator.state = saved.rng
+        self.generation = saved.generation
         self.genomes = self.evolver.genomes()
         self._networks.clear()
         self.members = tuple(
             attrs.evolve(member, diverged=diverged)
-            for member, diverged in zip(self.evolver.members(), state["diverged"], strict=True)
+            for member, diverged in zip(self.evolver.members(), saved.diverged, strict=True)
         )
-        self._best_so_far = state["best_so_far"]
-        self._lowest = state["lowest"]
-        self._champion = Member(**state["champion"]) if state["champion"] else None
+        self._best_so_far, self._lowest, self._champion = saved.best_so_far, saved.lowest, saved.champion
 
     def _note_members(self, fitness: NDArray[np.float64], diverged: Sequence[bool]) -> None:
         with blaming(self._evolver):
@@ -192,6 +198,19 @@ class Population:
             self._champion = latest.get(self._champion.id, self._champion)
         if self._champion is None or _rank(best) > _rank(self._champion):
             self._champion = best
+
+
+@attrs.frozen
+class _Saved:
+    """What :meth:`Population.state` returns, as it is read again."""
+
+    evolver: Any
+    rng: dict[str, Any]
+    generation: int = attrs.field(validator=ge(-1))
+    diverged: tuple[bool, ...]
+    best_so_far: float | None
+    lowest: float | None
+    champion: Member | None
 
 
 def _fitness(member: Member) -> float:

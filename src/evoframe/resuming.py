@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.layers import Layer, layers_of
-from evoframe.loading import Run, has_begun, load_run
+from evoframe.loading import Run, has_begun, load_run, run_tables
 from evoframe.locking import locked, released_on_error
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
@@ -23,7 +22,7 @@ from evoframe.resolve import load_config
 from evoframe.run import Execution, assemble, opened_store, verify_champion
 from evoframe.store import CONFIG_FILE, Store
 
-__all__ = ["configuration_of", "is_finished", "refuse_other_directories", "reopen", "restore", "resume"]
+__all__ = ["configuration_of", "is_finished", "reopen", "restore", "resume"]
 
 
 def resume(
@@ -70,7 +69,7 @@ def is_finished(directory: Path) -> bool:
     Raises:
         InputError: It is no run's directory, or damaged.
     """
-    refuse_other_directories(directory)
+    run_tables(directory)
     return has_begun(directory) and load_run(directory).finished
 
 
@@ -93,7 +92,7 @@ def reopen(
         ConfigurationError: As :func:`resume`.
         InputError: As :func:`resume`.
     """
-    refuse_other_directories(directory)
+    run_tables(directory)
     lock = locked(directory)
     with released_on_error(lock):
         config = configuration_of(directory, overrides, plugins)
@@ -114,17 +113,6 @@ def reopen(
         return Execution(config, directory, coevolution, store)
 
 
-def refuse_other_directories(directory: Path) -> None:
-    """Make sure that a directory is that of a run.
-
-    Raises:
-        InputError: It is not.
-    """
-    path = directory / CONFIG_FILE
-    if not path.is_file():
-        raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
-
-
 def configuration_of(directory: Path, overrides: Sequence[str | Layer], plugins: Plugins | None) -> RunConfig:
     """Return the configuration of a run, which is complete: it must not make us read other files.
 
@@ -137,16 +125,8 @@ def configuration_of(directory: Path, overrides: Sequence[str | Layer], plugins:
         ConfigurationError: It cannot be accepted.
         InputError: It is not complete.
     """
-    path = directory / CONFIG_FILE
-    try:
-        extends = tomllib.loads(path.read_text(encoding="utf-8")).get("extends")
-    except (OSError, ValueError, RecursionError):
-        extends = False  # load_config says what is wrong
-    if extends is not False:
-        raise InputError(
-            f"{path}: extends: a run's configuration is complete; expected false, found {extends!r}"
-        )
-    return load_config(path, overrides=overrides, plugins=plugins)
+    run_tables(directory)  # refuses what would make us look elsewhere
+    return load_config(directory / CONFIG_FILE, overrides=overrides, plugins=plugins)
 
 
 def _changes(directory: Path, config: RunConfig, saved: Run | None, *, allowed: bool) -> list[str]:
@@ -184,12 +164,14 @@ def restore(coevolution: Coevolution, saved: Run) -> None:
     if last is None and not state:
         return
     try:
-        if state["loop"]["turn"] != last:
-            raise ValueError(f"the state is that after turn {state['loop']['turn']}, the last one is {last}")  # noqa: TRY301
         coevolution.restore(state)
-    except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
+    except Exception as error:
         cause = f"missing {error}" if isinstance(error, KeyError) else str(error)
         raise InputError(f"{saved.directory}: the state cannot be restored: {cause}") from error
+    if coevolution.turn != last:
+        raise InputError(
+            f"{saved.directory}: the state is that after turn {coevolution.turn}, the last one is {last}"
+        )
 
 
 def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:

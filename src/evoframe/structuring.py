@@ -44,7 +44,7 @@ class Fault:
     involves: Path = ()
 
 
-class StructureError(Exception):
+class StructureError(ValueError):
     """Values that do not fit their type.
 
     Attributes:

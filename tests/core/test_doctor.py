@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 import toys
+from recorded import rewritten
 
 from evoframe import Plugins, RunConfig, load_run, run
-from evoframe.checksums import CHAINED, SINGLE, Checksums
 from evoframe.doctor import Check, check_installation, check_run
 from evoframe.errors import InputError
 from evoframe.locking import locked
@@ -28,17 +28,6 @@ SUBJECTS = ["format", "database", "configuration", "versions", "turns", "state",
 @pytest.fixture
 def finished(toy_config: Load, tmp_path: Path) -> Path:
     return run(toy_config(), out=tmp_path / "run").directory
-
-
-def rewritten(directory: Path, statement: str) -> None:
-    """Change rows, and make all checksums anew, as only somebody can who knows how."""
-    with contextlib.closing(sqlite3.connect(directory / "run.db")) as database, database:
-        assert database.execute(statement).rowcount > 0
-        database.execute("DELETE FROM checksums")
-        for table in (*CHAINED, *SINGLE):
-            rows = database.execute(f"SELECT * FROM {table}").fetchall()  # noqa: S608
-            if rows:
-                database.executemany("INSERT INTO checksums VALUES (?, ?)", Checksums.of_rows(table, rows))
 
 
 def problems(checks: list[Check]) -> dict[str, str]:
@@ -91,7 +80,11 @@ def test_a_run_that_is_being_written_is_left_alone(finished: Path, toy_plugins: 
         ("UPDATE best_pairs SET score = score + 1", "turns", "best_pairs: not the best of the pairs"),
         ("DELETE FROM best_pairs WHERE turn = 0", "turns", "best_pairs: not the best of the pairs"),
         ("DELETE FROM state WHERE part = 'population/a'", "state", "the state cannot be restored: missing"),
-        ("UPDATE state SET state = '{}' WHERE part = 'loop'", "state", "cannot be restored: missing 'turn'"),
+        (
+            "UPDATE state SET state = '{}' WHERE part = 'loop'",
+            "state",
+            "restored: loop.turn: is missing",
+        ),
         ("UPDATE meta SET value = '3' WHERE key = 'format'", "format", "this evoframe reads format"),
     ],
 )

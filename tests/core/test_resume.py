@@ -12,7 +12,7 @@ import pytest
 import toys
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from recorded import assert_same_result, rows
+from recorded import assert_same_result, rewritten, rows
 
 import evoframe.provenance
 from evoframe import ConfigurationError, InputError, Plugins, RunConfig, RunError, load_run, resume, run
@@ -172,12 +172,7 @@ class TestRefusal:
 
     @pytest.mark.parametrize("state", ["{}", "[]", "null", '{"values": 3}', '{"evolver": {}}'])
     def test_of_a_state_that_is_none(self, left: Path, toy_plugins: Plugins, state: str) -> None:
-        with sqlite3.connect(left / "run.db") as database:
-            turn = database.execute("SELECT turn FROM state WHERE part = 'population/a'").fetchone()[0]
-            database.execute("UPDATE state SET state = ? WHERE part = 'population/a'", (state,))
-            checksum = Checksums.of_row("state", ("population/a", turn, state))
-            database.execute("INSERT OR REPLACE INTO checksums VALUES (?, ?)", checksum)
-        database.close()
+        rewritten(left, "UPDATE state SET state = ? WHERE part = 'population/a'", state)
         with pytest.raises(InputError, match="the state cannot be restored"):
             reopen(left, plugins=toy_plugins)
 

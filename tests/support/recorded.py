@@ -7,6 +7,8 @@ import sqlite3
 from pathlib import Path
 from typing import Any
 
+from evoframe.checksums import CHAINED, SINGLE, Checksums
+
 TABLES = ("turns", "individuals", "pairs", "best_pairs", "state", "meta")
 """All but the workload, which is measured in seconds too."""
 
@@ -29,3 +31,14 @@ def written(directory: Path) -> dict[str, bytes]:
     """Return the files of a run's result beside its database, by name."""
     results = [*directory.glob("champion.*"), *directory.glob("verification.*")]
     return {path.name: path.read_bytes() for path in results}
+
+
+def rewritten(directory: Path, statement: str, *values: Any) -> None:
+    """Change rows, and make all checksums anew, as only somebody can who knows how."""
+    with contextlib.closing(sqlite3.connect(directory / "run.db")) as database, database:
+        assert database.execute(statement, values).rowcount > 0
+        database.execute("DELETE FROM checksums")
+        for table in (*CHAINED, *SINGLE):
+            rows = database.execute(f"SELECT * FROM {table}").fetchall()  # noqa: S608
+            if rows:
+                database.executemany("INSERT INTO checksums VALUES (?, ?)", Checksums.of_rows(table, rows))

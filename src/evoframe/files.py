@@ -1,0 +1,52 @@
+"""Files that may come from anyone: read whole, but only if they are files, and not endless."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+
+from evoframe.errors import InputError
+
+__all__ = ["read_text", "refuse_links"]
+
+
+def read_text(path: Path, largest: int) -> str:
+    """Return the text of a file.
+
+    Args:
+        path: The file.
+        largest: How many MiB it may have.
+
+    Raises:
+        InputError: It cannot be read, is too large, or is no text.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read((largest << 20) + 1)
+        if len(content) > largest << 20:
+            raise InputError(f"{path}: is larger than {largest} MiB, which none of ours is")
+        return content.decode("utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: is not UTF-8 text") from error
+    except ValueError as error:  # a name that no file can have
+        raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
+
+
+def refuse_links(directory: Path) -> None:
+    """Make sure that what lies in a run's directory is there, and not elsewhere.
+
+    Raises:
+        InputError: There is a link, or something that is neither a file nor a directory.
+    """
+    try:
+        for path in directory.iterdir():
+            mode = path.lstat().st_mode
+            if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+                what = "a link" if stat.S_ISLNK(mode) else "no file"
+                raise InputError(f"{path}: is {what}; a run's directory has nothing but files")
+    except FileNotFoundError:
+        return  # a journal that has just gone, or no directory: whoever reads it says so
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be read: {error.strerror}") from error
