@@ -236,10 +236,9 @@ def run_tables(directory: Path) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid TOML: {error}") from error
     if tables.get("extends") is not False:
-        found = tables.get("extends")
-        raise InputError(
-            f"{path}: extends: a run's configuration is complete; expected false, found {found!r}"
-        )
+        found = repr(tables["extends"]) if "extends" in tables else "nothing"
+        what = "extends: a run's configuration is complete"
+        raise InputError(f"{path}: {what}; expected false, found {found}")
     return tables
 
 

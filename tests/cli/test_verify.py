@@ -97,9 +97,7 @@ class TestRun:
         (tmp_path / "empty").mkdir()
         refused = evoframe("verify", "empty", "nowhere")
         assert refused.returncode == 2
-        assert refused.stderr == (
-            "Error: empty: is no run's directory: config.toml: No such file or directory\n"
-        )
+        assert refused.stderr == ("Error: empty: is no run's directory: there is no config.toml\n")
 
 
 class TestFile:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import types
 from pathlib import Path
 
@@ -11,7 +12,8 @@ import pytest
 import evoframe
 
 ROOT = Path(__file__).parents[2]
-PLUGIN_FILES = sorted(ROOT.glob("plugins/*/evoframe_*/*.py"))
+PLUGIN_FILES = sorted(ROOT.glob("plugins/*/evoframe_*/**/*.py"))
+SOURCES = sorted([*(ROOT / "src").rglob("*.py"), *PLUGIN_FILES, *ROOT.glob("lib*/evoframe_*/*.py")])
 
 
 def imports_of(path: Path) -> list[tuple[str, str]]:
@@ -26,7 +28,7 @@ def imports_of(path: Path) -> list[tuple[str, str]]:
 
 
 def test_there_are_plugins() -> None:
-    assert len({path.parent for path in PLUGIN_FILES}) == 7
+    assert len({path.parent for path in PLUGIN_FILES}) == 8  # the simulators' has one for VXA within
 
 
 @pytest.mark.parametrize("path", PLUGIN_FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
@@ -35,6 +37,11 @@ def test_plugins_import_only_the_public_api(path: Path) -> None:
         if module.split(".")[0] == "evoframe":
             assert module == "evoframe", f"{path}: {module}"
             assert name in evoframe.__all__, f"{path}: {name}"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_nothing_that_is_read_is_executed(path: Path) -> None:
+    assert not re.findall(r"pickle|\beval\(|\bexec\(|yaml\.load|shell=True", path.read_text())
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "src").rglob("*.py")), ids=lambda path: path.name)

@@ -218,6 +218,9 @@ class TestPython:
         with pytest.raises(InputError, match="is no run's directory"):
             load_run(tmp_path)
         (tmp_path / "config.toml").write_text("[run]")
+        with pytest.raises(InputError, match="extends: .* is complete; expected false, found nothing"):
+            load_run(tmp_path)
+        (tmp_path / "config.toml").write_text("extends = false")
         with pytest.raises(InputError, match=r"run\.db: there is no such file"):
             load_run(tmp_path)
         (tmp_path / "run.db").write_text(
@@ -256,15 +259,16 @@ class TestObservers:
         run(toy_config(), out=tmp_path / "run")
         assert told == ["started", *[(index, index + 1) for index in range(9)], True]
 
+    @pytest.mark.parametrize("hook", ["run_started", "turn_finished", "run_finished"])
     def test_one_that_raises_changes_nothing(
-        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path, hook: str
     ) -> None:
         undisturbed = run(toy_config(), out=tmp_path / "undisturbed")
 
-        def turned(turn: Turn) -> None:
+        def told() -> None:
             raise OSError("no disk")
 
-        toy_plugins.add(plugin(evoframe_turn_finished=turned), Source("watcher", "1.0", "watch"))
+        toy_plugins.add(plugin(**{f"evoframe_{hook}": told}), Source("watcher", "1.0", "watch"))
         with pytest.warns(PluginWarning, match="observer 'watcher:watch' is disabled: OSError: no disk"):
             disturbed = run(toy_config(), out=tmp_path / "disturbed")
         assert disturbed.pairs == undisturbed.pairs
