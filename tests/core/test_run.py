@@ -218,7 +218,7 @@ class TestPython:
         with pytest.raises(InputError, match="is no run's directory"):
             load_run(tmp_path)
         (tmp_path / "config.toml").write_text("[run]")
-        with pytest.raises(InputError, match="extends: .* is complete; expected false, found nothing"):
+        with pytest.raises(InputError, match=r"extends: .* is complete; expected false, found nothing"):
             load_run(tmp_path)
         (tmp_path / "config.toml").write_text("extends = false")
         with pytest.raises(InputError, match=r"run\.db: there is no such file"):
