@@ -58,15 +58,13 @@ def _text(rows: Iterable[Row]) -> bytes:
     """Return rows as one text, which is the same however they are parted into calls."""
     listed = list(rows)
     text = _json(listed)
-    if "-0.0" in text:  # the database keeps no sign of a zero
+    if "-0.0," in text or "-0.0]" in text:  # the database keeps no sign of a zero
         text = _json([[_signless(value) for value in row] for row in listed])
     return f"{text[1:-1]},".encode() if listed else b""
 
 
-def _json(rows: list[Row]) -> str:
-    return json.dumps(
-        rows, separators=(",", ":"), default=repr
-    )  # bytes are read only from a damaged database
+# What is no JSON is the bytes of a damaged database.
+_json = json.JSONEncoder(separators=(",", ":"), default=repr).encode
 
 
 def _signless(value: Any) -> Any:

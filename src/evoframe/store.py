@@ -85,6 +85,7 @@ class Store:
     _lock: Lock
     _database: sqlite3.Connection
     _checksums: Checksums = attrs.field(factory=Checksums, init=False)
+    _changed: list[tuple[str, str]] = attrs.field(factory=list, init=False)
     last_turn: int = attrs.field(default=-1, init=False)
     _synced: float = attrs.field(factory=time.monotonic, init=False)
 
@@ -180,13 +181,12 @@ class Store:
         if listed:
             self._write("INSERT", table, listed)
             self._checksums.add(table, listed)
-            self._write("INSERT OR REPLACE", "checksums", [self._checksums.of(table)])
+            self._changed.append(self._checksums.of(table))
 
     def _replace(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
         """Put rows in place of those with the same keys."""
         self._write("INSERT OR REPLACE", table, rows)
-        checksums = [Checksums.of_row(table, row) for row in rows]
-        self._write("INSERT OR REPLACE", "checksums", checksums)
+        self._changed += [Checksums.of_row(table, row) for row in rows]
 
     def _write(self, verb: str, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
         marks = ", ".join("?" * len(rows[0]))
@@ -198,8 +198,10 @@ class Store:
             try:
                 self._database.execute("BEGIN IMMEDIATE")
                 yield
+                self._write("INSERT OR REPLACE", "checksums", self._changed)
                 self._database.execute("COMMIT")
             finally:
+                self._changed.clear()
                 if self._database.in_transaction:
                     self._database.execute("ROLLBACK")
 
@@ -240,8 +242,8 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 
-def _json(value: Any) -> str:
-    return json.dumps(value, separators=(",", ":"), allow_nan=False)
+# What contains itself ends in a RecursionError.
+_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False, check_circular=False).encode
 
 
 def _state(part: str, values: Any) -> str:
@@ -259,6 +261,7 @@ def _opened(path: Path) -> sqlite3.Connection:
         database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
         database.execute("PRAGMA journal_mode = WAL")
         database.execute("PRAGMA synchronous = NORMAL")
+        database.execute("PRAGMA wal_autocheckpoint = 0")  # it has its own times, see _SYNC_INTERVAL
     except sqlite3.Error as error:
         raise InputError(f"{path}: cannot be written: {error}") from error
     return database

@@ -173,7 +173,8 @@ def _dump_species(species: Any) -> dict[str, Any]:
         "members": list(species.members),
         "fitness": species.fitness,
         "adjusted_fitness": species.adjusted_fitness,
-        "fitness_history": list(species.fitness_history),
+        # All that neat-python asks of a history that grows without end.
+        "best_fitness": max(species.fitness_history, default=None),
     }
 
 
@@ -188,8 +189,8 @@ def _load_species(saved: Any, genomes: Mapping[int, Any]) -> Any:
     species.update(genomes[representative], {key: genomes[key] for key in keys})
     species.fitness = _number_or_none(saved, "fitness")
     species.adjusted_fitness = _number_or_none(saved, "adjusted_fitness")
-    history = rows(saved, "fitness_history")
-    species.fitness_history = [number({"fitness_history": value}, "fitness_history") for value in history]
+    best = _number_or_none(saved, "best_fitness")
+    species.fitness_history = [] if best is None else [best]
     return species
 
 

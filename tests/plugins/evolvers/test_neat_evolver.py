@@ -304,7 +304,7 @@ DAMAGE = [
             "members",
             "fitness",
             "adjusted_fitness",
-            "fitness_history",
+            "best_fitness",
         )
     ],
     delete("cohort", "members", 0),
@@ -336,7 +336,7 @@ DAMAGE = [
     put(10**6, "species", 0, "representative"),
     put([], "species"),
     put([None], "species"),
-    put(["x"], "species", 0, "fitness_history"),
+    put("x", "species", 0, "best_fitness"),
     put(None, "species", 0, "members"),
     put([[]], "species", 0, "members"),
 ]
