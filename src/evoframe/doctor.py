@@ -22,6 +22,7 @@ from evoframe.provenance import differences, provenance
 from evoframe.resolve import load_config
 from evoframe.resuming import configuration_of, restore
 from evoframe.run import assemble
+from evoframe.store import CHAMPION_FILE
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
 
@@ -204,14 +205,19 @@ def _state(run: Run, config: RunConfig) -> str:
 def _champion(run: Run, config: RunConfig) -> str:
     if run.champion_document is None:
         return "there is none yet"
-    path = run.directory / "champion.json"
-    if not path.is_file():
-        raise InputError(f"{path}: is missing; evoframe resume {run.directory} writes it again")
-    if path.read_bytes() != f"{run.champion_document}\n".encode():
-        raise InputError(f"{path}: is not that of the database")
     champion, objective = run.champion, config.objective.component
     [score] = simulated(config.simulator.component, [champion.design], objective.record, objective)
     if score.value != champion.score:
         now = f"diverges at step {score.diverged_at}" if score.value is None else f"scores {score.value!r}"
         raise InputError(f"scored {champion.score!r} in its run, but now {now}")
-    return f"scores {champion.score!r}, as in its run"
+    return f"scores {champion.score!r}, as in its run{_champion_file(run)}"
+
+
+def _champion_file(run: Run) -> str:
+    """Return what there is to say of champion.json."""
+    if run.champion_is_written:
+        return ""
+    todo = f"evoframe resume {run.directory} writes it again"
+    if run.finished:
+        raise InputError(f"{run.directory / CHAMPION_FILE}: is not that of the database; {todo}")
+    return f"; {CHAMPION_FILE} is not up to date: {todo}"

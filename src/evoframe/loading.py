@@ -15,7 +15,7 @@ from evoframe.champion import LARGEST_DOCUMENT, champion_from_json, parsed_json
 from evoframe.checksums import CHAINED, SINGLE, Checksums
 from evoframe.errors import InputError
 from evoframe.files import read_text, refuse_links
-from evoframe.store import CONFIG_FILE, DATABASE_FILE, RUN_FORMAT, schema
+from evoframe.store import CHAMPION_FILE, CONFIG_FILE, DATABASE_FILE, RUN_FORMAT, schema
 from evoframe.values import Design
 from evoframe.verification import VERIFICATION_FILE, Verification, verification_from_json
 
@@ -144,6 +144,14 @@ class Run:
         """The text of champion.json, without its last line end; ``None`` if there is no champion yet."""
         rows = self.table("best_pairs")
         return rows[-1]["document"] if rows else None
+
+    @property
+    def champion_is_written(self) -> bool:
+        """Whether champion.json is what the database has; it may be behind where a run was killed."""
+        path, document = self.directory / CHAMPION_FILE, self.champion_document
+        if document is None:
+            return True
+        return path.is_file() and path.read_bytes() == f"{document}\n".encode()
 
     @property
     def verification(self) -> Verification | None:

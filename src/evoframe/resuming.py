@@ -64,13 +64,16 @@ def resume(
 
 
 def is_finished(directory: Path) -> bool:
-    """Return whether a run's directory holds a run that has come to its end.
+    """Return whether a run's directory holds a run that has come to its end, with all its files.
 
     Raises:
         InputError: It is no run's directory, or damaged.
     """
     run_tables(directory)
-    return has_begun(directory) and load_run(directory).finished
+    if not has_begun(directory):
+        return False
+    run = load_run(directory)
+    return run.finished and run.champion_is_written
 
 
 def reopen(
@@ -180,10 +183,6 @@ def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:
         leftover.unlink(missing_ok=True)
     rows: Mapping[str, Any] = {table: saved.rows(table) for table in CHAINED}
     store.go_on(rows, (len(rows["resumes"]), saved.last_turn, json.dumps(changes)))
-    document = saved.champion_document
-    if document is None:
-        return
-    path = saved.directory / "champion.json"
-    if not path.is_file() or path.read_bytes() != f"{document}\n".encode():
-        champion = parsed_json(document)
+    if saved.champion_document is not None and not saved.champion_is_written:
+        champion = parsed_json(saved.champion_document)
         store.save_champion(champion, design_from_json(champion["design"]))

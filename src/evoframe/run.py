@@ -328,6 +328,7 @@ def _play(coevolution: Coevolution, store: Store, observers: Observers, stop: Ca
         if stop():
             break
     if not coevolution.finished:
+        store.update_champion()
         return False
     store.finish(_result(coevolution))
     return True

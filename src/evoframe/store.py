@@ -20,11 +20,21 @@ from evoframe.errors import ComponentError, InputError, RunError
 from evoframe.locking import Lock
 from evoframe.values import Design, Pair, PopulationReport, Turn
 
-__all__ = ["CONFIG_FILE", "DATABASE_FILE", "RUN_FORMAT", "Store", "schema", "write_atomically", "write_json"]
+__all__ = [
+    "CHAMPION_FILE",
+    "CONFIG_FILE",
+    "DATABASE_FILE",
+    "RUN_FORMAT",
+    "Store",
+    "schema",
+    "write_atomically",
+    "write_json",
+]
 
 RUN_FORMAT = 2
 """Version of the run directory; champion.json has its own."""
 
+CHAMPION_FILE = "champion.json"
 CONFIG_FILE = "config.toml"
 DATABASE_FILE = "run.db"
 
@@ -87,6 +97,7 @@ class Store:
     _checksums: Checksums = attrs.field(factory=Checksums, init=False)
     _changed: list[tuple[str, str]] = attrs.field(factory=list, init=False)
     last_turn: int = attrs.field(default=-1, init=False)
+    _unwritten: tuple[Mapping[str, Any], Design] | None = attrs.field(default=None, init=False)
     _synced: float = attrs.field(factory=time.monotonic, init=False)
 
     @classmethod
@@ -126,7 +137,7 @@ class Store:
             self._insert("resumes", [tuple(resume)])
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
-        """Save a turn and the state after it, both or neither; then the champion's files, if it is a new one.
+        """Save a turn and the state after it, both or neither; the files of a new champion may follow later.
 
         Args:
             turn: The turn.
@@ -148,12 +159,18 @@ class Store:
             )
         self.last_turn = turn.index
         if champion and turn.best_pair:
-            self.save_champion(champion, turn.best_pair.design)
+            self._unwritten = champion, turn.best_pair.design
         self._synchronise()
+
+    def update_champion(self) -> None:
+        """Write the files of the best pair that is saved, if they are those of an earlier one."""
+        if self._unwritten is not None:
+            self.save_champion(*self._unwritten)
+            self._unwritten = None
 
     def save_champion(self, document: Mapping[str, Any], design: Design) -> None:
         """Write the champion's files; none of an earlier one stays."""
-        write_json(self.directory / "champion.json", document)
+        write_json(self.directory / CHAMPION_FILE, document)
         for ending, data in self.exports(design).items():
             path = self.directory / f"champion.{ending}"
             if data is None:
@@ -163,17 +180,20 @@ class Store:
 
     def finish(self, result: Mapping[str, Any]) -> None:
         """Note the final figures."""
+        self.update_champion()
         with self._transaction():
             self._replace("meta", [(key, _json(value)) for key, value in result.items()])
 
     def close(self) -> None:
         """Leave one self-contained database file, unless somebody is reading it just now."""
-        try:
-            self._database.execute("PRAGMA journal_mode = DELETE")
-        except sqlite3.Error as error:
-            _log.info("%s: the journal stays beside the database: %s", self.directory, error)
-        self._database.close()
-        self._lock.release()
+        with contextlib.ExitStack() as stack:
+            stack.callback(self._lock.release)
+            stack.callback(self._database.close)
+            try:
+                self._database.execute("PRAGMA journal_mode = DELETE")
+            except sqlite3.Error as error:
+                _log.info("%s: the journal stays beside the database: %s", self.directory, error)
+            self.update_champion()
 
     def _insert(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
         """Add rows to a table that only grows, in the order of their keys."""
@@ -216,6 +236,7 @@ class Store:
         if time.monotonic() - self._synced >= _SYNC_INTERVAL:
             with self._writing():
                 self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
+            self.update_champion()
             self._synced = time.monotonic()
 
 

@@ -41,7 +41,10 @@ def test_a_run_and_its_champion(evoframe: Evoframe, tmp_path: Path) -> None:
     (tmp_path / "here" / "champion.json").unlink()
     found = evoframe("doctor", "-p", toys.__file__, "here")
     assert found.returncode == 1
-    assert "here/champion.json: is missing; evoframe resume here writes it again" in found.stdout
+    assert (
+        "here/champion.json: is not that of the database; evoframe resume here writes it again"
+        in found.stdout
+    )
 
 
 def test_what_is_no_run_is_refused(evoframe: Evoframe) -> None:

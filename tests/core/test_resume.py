@@ -96,6 +96,16 @@ def test_a_run_that_was_killed_before_its_first_transaction_begins(
     assert_same_result(undisturbed.directory, resume(left, plugins=toy_plugins).directory)
 
 
+def test_a_finished_run_whose_champion_is_missing_gets_it_again(
+    toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+) -> None:
+    finished = run(toy_config(), out=tmp_path / "run")
+    champion = (tmp_path / "run" / "champion.json").read_bytes()
+    (tmp_path / "run" / "champion.json").unlink()
+    assert resume(tmp_path / "run", plugins=toy_plugins).summary == finished.summary
+    assert (tmp_path / "run" / "champion.json").read_bytes() == champion
+
+
 def test_a_finished_run_stays_as_it_is(toy_config: Load, toy_plugins: Plugins, tmp_path: Path) -> None:
     finished = run(toy_config(), out=tmp_path / "run")
     before = (finished.directory / "run.db").read_bytes()

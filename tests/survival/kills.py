@@ -78,6 +78,7 @@ def dies_at(call: int) -> None:
 
         return wrapper
 
+    evoframe.store._SYNC_INTERVAL = 0.0  # a champion's file and the synchronisation come after every turn
     store: Any = evoframe.store.Store
     store._write = dying(store._write, after=True)
     replace: Any = dying(Path.replace, after=call % 2 == 0)
@@ -107,7 +108,7 @@ def forked(action: Callable[[int], None]) -> Iterator[tuple[int, int]]:
 def attempt(directory: Path, seed: int, chance: random.Random) -> str:
     """Let a run go on, and kill it. Was it ``finished``, killed ``outside`` or ``inside``, or ``early``?"""
     workers, inside, turns = chance.choice([1, 2]), chance.random() < 0.5, chance.randint(1, 3)
-    call = chance.randint(6, 24)  # a turn writes about ten times
+    call = chance.randint(6, 24)  # a turn writes about eight times
 
     def action(pipe: int) -> None:
         if inside:
