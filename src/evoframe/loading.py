@@ -236,6 +236,9 @@ def run_tables(directory: Path) -> dict[str, Any]:
     """
     path = directory / CONFIG_FILE
     refuse_links(directory)
+    journal = directory / f"{DATABASE_FILE}-journal"
+    if journal.exists():
+        raise InputError(f"{journal}: is of another program, which has left {DATABASE_FILE} half written")
     if not path.is_file():
         raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
     text = read_text(path, LARGEST_DOCUMENT)

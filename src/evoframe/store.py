@@ -42,6 +42,10 @@ Exports: TypeAlias = Callable[[Design], Mapping[str, bytes | None]]
 
 _log = logging.getLogger(__name__)
 
+# The way from and to the write-ahead log is one write of one page. A journal of it, left by a kill, could be
+# undone by nobody who may only read, and names files that whoever undoes it touches.
+_WITHOUT_A_JOURNAL = "PRAGMA journal_mode = MEMORY"
+
 _SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
 
 _SCHEMA = """
@@ -169,14 +173,14 @@ class Store:
             self._unwritten = None
 
     def save_champion(self, document: Mapping[str, Any], design: Design) -> None:
-        """Write the champion's files; none of an earlier one stays."""
-        write_json(self.directory / CHAMPION_FILE, document)
+        """Write the champion's files, champion.json as the last: where it is written, all are."""
         for ending, data in self.exports(design).items():
             path = self.directory / f"champion.{ending}"
             if data is None:
                 path.unlink(missing_ok=True)
             else:
                 write_atomically(path, data)
+        write_json(self.directory / CHAMPION_FILE, document)
 
     def finish(self, result: Mapping[str, Any]) -> None:
         """Note the final figures."""
@@ -190,7 +194,7 @@ class Store:
             stack.callback(self._lock.release)
             stack.callback(self._database.close)
             try:
-                self._database.execute("PRAGMA journal_mode = DELETE")
+                self._database.execute(_WITHOUT_A_JOURNAL)
             except sqlite3.Error as error:
                 _log.info("%s: the journal stays beside the database: %s", self.directory, error)
             self.update_champion()
@@ -280,6 +284,8 @@ def _opened(path: Path) -> sqlite3.Connection:
     """Open a database that survives a kill at any moment; see ``_SYNC_INTERVAL`` for a power cut."""
     try:
         database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+        if database.execute("PRAGMA journal_mode").fetchone() != ("wal",):
+            database.execute(_WITHOUT_A_JOURNAL)
         database.execute("PRAGMA journal_mode = WAL")
         database.execute("PRAGMA synchronous = NORMAL")
         database.execute("PRAGMA wal_autocheckpoint = 0")  # it has its own times, see _SYNC_INTERVAL

@@ -27,6 +27,7 @@ from evoframe import (
     Verification,
     load_run,
     run,
+    store,
     verify,
 )
 from evoframe.observers import Observers
@@ -56,7 +57,10 @@ class TestExportedChampion:
         roles = finished.champion.design.roles
         assert toy_design(finished.directory) == {role: array[0] for role, array in roles.items()}
 
-    def test_is_as_new_as_the_other_after_every_turn(self, toy_config: Load, tmp_path: Path) -> None:
+    def test_is_as_new_as_the_other_after_every_turn(
+        self, toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(store, "_SYNC_INTERVAL", 0.0)  # else: within a second
         asked: list[float] = []
 
         def stop() -> bool:
@@ -93,6 +97,7 @@ class TestExportedChampion:
             return export(self, design, format_)
 
         monkeypatch.setattr(toys.Varied, "export", only_the_first)
+        monkeypatch.setattr(store, "_SYNC_INTERVAL", 0.0)  # several champions are written, not only the last
         finished = run(toy_config("simulator=toy-varied"), out=tmp_path / "run")
         assert not (finished.directory / "champion.txt").exists()  # nor that of an earlier champion
         assert (finished.directory / "champion.toy").exists()

@@ -123,6 +123,8 @@ def attempt(directory: Path, seed: int, chance: random.Random) -> str:
             time.sleep(chance.uniform(0.0, _PAUSE))
             os.kill(child, signal.SIGKILL)
         _, status = os.waitpid(child, 0)
+    if (directory / "run.db-journal").exists():
+        raise SystemExit(f"seed {seed}: a kill left a journal that only a writer can undo")
     if os.WIFEXITED(status):
         if os.WEXITSTATUS(status) != 0:
             raise SystemExit(f"seed {seed}: a run failed instead of being killed")

@@ -56,6 +56,15 @@ def test_what_has_no_end_is_not_waited_for(directory: Path) -> None:
         load_run(directory)
 
 
+def test_a_journal_is_not_undone(directory: Path) -> None:
+    (directory / "run.db-journal").write_bytes(b"x" * 5000)
+    before = (directory / "run.db").read_bytes()
+    for use in (load_run, is_finished, reopen):
+        with pytest.raises(InputError, match=r"run\.db-journal: is of another program"):
+            use(directory)
+    assert (directory / "run.db").read_bytes() == before
+
+
 def test_a_champion_without_an_end_is_not_read() -> None:
     with pytest.raises(InputError, match="/dev/zero: is larger than 64 MiB"):
         read_champion(Path("/dev/zero"))
