@@ -15,7 +15,7 @@ from evoframe.checksums import CHAINED, SINGLE
 from evoframe.config import RunConfig
 from evoframe.errors import EvoframeError, InputError
 from evoframe.evaluation import simulated
-from evoframe.loading import Run, load_run, run_tables
+from evoframe.loading import Run, has_begun, load_run, run_tables
 from evoframe.locking import LOCK_FILE, locked
 from evoframe.plugins import Plugins
 from evoframe.provenance import differences, provenance
@@ -67,6 +67,10 @@ def check_run(directory: Path, plugins: Plugins) -> Iterator[Check]:
 
 
 def _check_files(directory: Path, plugins: Plugins) -> Iterator[Check]:
+    if not has_begun(directory):
+        todo = f"evoframe resume {directory}"
+        yield Check("database", "note", f"has no tables: killed before anything was saved; to begin: {todo}")
+        return
     yield (readable := _checked("format", lambda: _format(load_run(directory))))
     if readable.state == "problem":
         return

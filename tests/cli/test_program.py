@@ -284,6 +284,18 @@ class TestRun:
         assert package.load_run(tmp_path / "here").turns == []
 
 
+def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "body.toy").write_text("designs = [{a = 1.0, b = 1.0}]")
+    slow = "simulator={name='toy-unverifiable', delay=3600.0}"
+    command = ["verify", "-v", "-p", toys.__file__, "body.toy", "--preset", "toy.toml", "--set", slow]
+    with started(tmp_path, *command) as process:
+        told(process, "looking for variants")
+        process.send_signal(signal.SIGINT)
+        told(process, "Interrupted")
+        assert process.wait(60) == 130
+
+
 FAULTS = [
     (
         ["--set", "aggregator=wn"],

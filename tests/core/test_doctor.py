@@ -60,6 +60,15 @@ def test_a_run_that_was_left_can_go_on(toy_config: Load, toy_plugins: Plugins, t
     assert f"saved up to 0 of 8; to go on: evoframe resume {tmp_path / 'run'}" in [c.finding for c in checks]
 
 
+def test_a_run_that_was_killed_before_anything_was_saved_can_begin(
+    finished: Path, toy_plugins: Plugins
+) -> None:
+    (finished / "run.db").unlink()
+    [check] = check_run(finished, toy_plugins)
+    assert (check.state, check.subject) == ("note", "database")
+    assert check.finding.endswith(f"to begin: evoframe resume {finished}")
+
+
 def test_a_run_that_is_being_written_is_left_alone(finished: Path, toy_plugins: Plugins) -> None:
     lock = locked(finished)
     try:

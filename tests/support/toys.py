@@ -5,6 +5,7 @@ A genome is a number, a design has one number for each role, and a score is thei
 
 from __future__ import annotations
 
+import logging
 import time
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -303,6 +304,7 @@ class Unverifiable(Varied):
     delay: float = 0.0
 
     def variants(self, design: Design, record: Record) -> Sequence[Variant]:
+        logging.getLogger(__name__).info("looking for variants")
         time.sleep(self.delay)
         raise InputError("no variant fits")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import warnings
 from typing import Any
@@ -56,6 +57,9 @@ class _Program(click.Group):
             return super().invoke(ctx)
         except EvoframeError as error:
             raise _failure(error) from error
+        except KeyboardInterrupt as interrupt:
+            click.echo("Interrupted", err=True)
+            raise click.exceptions.Exit(128 + signal.SIGINT) from interrupt
 
     def _of_plugins(self, ctx: click.Context) -> click.Group:
         group = click.Group("evoframe")
