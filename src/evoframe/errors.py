@@ -9,6 +9,7 @@ __all__ = [
     "ConfigurationError",
     "EvoframeError",
     "InputError",
+    "LockedError",
     "PluginError",
     "PluginWarning",
     "RunError",
@@ -30,6 +31,10 @@ class ConfigurationError(EvoframeError):
 
 class InputError(EvoframeError):
     """A file given by the user that cannot be read, or that is not what it should be."""
+
+
+class LockedError(InputError):
+    """A run's directory that another process is writing to."""
 
 
 class PluginError(EvoframeError):

@@ -73,6 +73,22 @@ class Layers:
             result = _merge(result, layer.tree, ())
         return result
 
+    def under(self, overrides: Iterable[str | Layer]) -> Layers:
+        """Return the same with *overrides* on top: as for :func:`read_layers`."""
+        if isinstance(overrides, str):
+            raise TypeError("overrides are a list of strings, not one string")
+        on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
+        return Layers((*self.layers, *map(_with_component_tables, on_top)))
+
+    def without(self, *keys: str) -> Layers:
+        """Return the same without some keys at the top."""
+        return Layers(
+            tuple(
+                Layer(layer.origin, {key: value for key, value in layer.tree.items() if key not in keys})
+                for layer in self.layers
+            )
+        )
+
     def origin(self, *paths: tuple[str, ...]) -> str:
         """Return the origin of the value at the latest of *paths*, or of the nearest table around it."""
         return self.layers[max(map(self._level, paths))].origin
@@ -105,11 +121,7 @@ def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> La
     Raises:
         ConfigurationError: Something cannot be read; says what and where.
     """
-    if isinstance(overrides, str):
-        raise TypeError("overrides are a list of strings, not one string")
-    on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
-    layers = [*_chain(str(source), Path(), ()), *on_top]
-    return Layers(tuple(Layer(layer.origin, _with_component_tables(layer)) for layer in layers))
+    return Layers(()).under(_chain(str(source), Path(), ())).under(overrides)
 
 
 def layer_of(origin: str, key: str, value: Any) -> Layer:
@@ -210,7 +222,7 @@ def _is_component(path: tuple[str, ...]) -> bool:
     return len(path) == 3 and path[0] == "populations" and path[2] in POPULATION_COMPONENTS
 
 
-def _with_component_tables(layer: Layer) -> Tree:
+def _with_component_tables(layer: Layer) -> Layer:
     def convert(value: Any, path: tuple[str, ...]) -> Any:
         if _is_component(path) and isinstance(value, str):
             return {"name": value}
@@ -218,8 +230,7 @@ def _with_component_tables(layer: Layer) -> Tree:
             return {key: convert(inner, (*path, key)) for key, inner in value.items()}
         return value
 
-    converted: Tree = convert(layer.tree, ())
-    return converted
+    return Layer(layer.origin, convert(layer.tree, ()))
 
 
 def _merge(base: Any, over: Any, path: tuple[str, ...]) -> Any:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import filelock
 
-from evoframe.errors import InputError
+from evoframe.errors import InputError, LockedError
 
 __all__ = ["LOCK_FILE", "Lock", "locked", "released_on_error"]
 
@@ -22,13 +22,14 @@ def locked(directory: Path) -> Lock:
     """Return the lock of a run's directory, which ends with this process at the latest, however it ends.
 
     Raises:
-        InputError: Another process has it, or the directory cannot be written.
+        LockedError: Another process has it.
+        InputError: The directory cannot be written.
     """
     lock = filelock.FileLock(directory / LOCK_FILE, timeout=0)
     try:
         lock.acquire()
     except filelock.Timeout as error:
-        raise InputError(
+        raise LockedError(
             f"{directory}: is being written by another process; wait until it has ended, or end it"
         ) from error
     except OSError as error:

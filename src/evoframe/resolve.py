@@ -19,7 +19,7 @@ from evoframe.plugins import KINDS, Offer, Plugins, suggestion
 from evoframe.protocols import Simulator
 from evoframe.structuring import Fault, StructureError, found, structure
 
-__all__ = ["load_config", "named_simulator"]
+__all__ = ["load_config", "named_simulator", "resolved"]
 
 C = TypeVar("C")
 _ROLE = re.compile(r"[a-z][a-z0-9_-]*")
@@ -45,13 +45,25 @@ def load_config(
     """
     if not isinstance(source, str | Path):
         raise TypeError(f"a configuration is named by a preset or a file, not by {type(source).__name__}")
-    layers = read_layers(source, overrides)
-    tree = layers.merged()
-    reading = _Reading(tree)
+    return resolved(read_layers(source, overrides), Path(source).stem, plugins or discover())
+
+
+def resolved(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
+    """Resolve and check a configuration that was read.
+
+    Args:
+        layers: What was read.
+        label: What a person calls it.
+        plugins: The plugins to choose from.
+
+    Raises:
+        ConfigurationError: With all faults that were found, each with its file and key.
+    """
+    reading = _Reading(layers.merged())
     settings = reading.section("plugins", PluginSettings) or PluginSettings()
-    usable = (plugins or discover()).without(settings.block)
+    usable = plugins.without(settings.block)
     reading.refuse_missing(usable, settings.require)
-    config = reading.config(usable, settings, Path(source).stem)
+    config = reading.config(usable, settings, label)
     if config is None:
         raise ConfigurationError(_report(reading.faults, layers))
     return config

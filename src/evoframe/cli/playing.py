@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import signal
-from collections.abc import Iterator
 from pathlib import Path
-from types import FrameType
 
 import click
 from rich.table import Table
 
 from evoframe.cli.context import is_quiet, output, scored, unit_of
 from evoframe.cli.progress import Progress
+from evoframe.cli.signals import exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
 from evoframe.config import RunConfig
 from evoframe.loading import Run, load_run
@@ -22,15 +20,13 @@ from evoframe.verification import can_verify
 
 __all__ = ["play", "show_end"]
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-
 
 def play(ctx: click.Context, execution: Execution) -> None:
     """Run to the end, and show and verify what came of it; or stop where a signal demands it."""
     manager = execution.config.discovered.manager
     if not is_quiet(ctx):
         manager.register(Progress(), name="evoframe:progress")
-    with _stop_on_signals() as stop:
+    with stop_on_signals("this turn") as stop:
         try:
             completed = execution.play(Observers(manager), stop.is_asked)
         except KeyboardInterrupt:
@@ -56,7 +52,7 @@ def show_end(ctx: click.Context, config: RunConfig, directory: Path) -> None:
             f"evoframe verify {directory} does that",
             err=True,
         )
-        ctx.exit(_exit_code(signal.SIGINT))
+        ctx.exit(exit_code(signal.SIGINT))
 
 
 def _verify(config: RunConfig, directory: Path, quiet: bool) -> None:
@@ -74,43 +70,6 @@ def _interrupted(stopped: Run) -> str:
     last, directory = stopped.last_turn, stopped.directory
     saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
     return f"Interrupted; {saved} in {directory}; to go on: evoframe resume {directory}"
-
-
-class _Stop:
-    """Remembers that somebody asked to stop; a second request stops at once."""
-
-    def __init__(self) -> None:
-        self.asked_by: int | None = None
-
-    def is_asked(self) -> bool:
-        return self.asked_by is not None
-
-    @property
-    def exit_code(self) -> int:
-        return _exit_code(self.asked_by or signal.SIGINT)
-
-    def handle(self, number: int, frame: FrameType | None) -> None:
-        if self.asked_by is not None:
-            signal.default_int_handler(number, frame)
-        self.asked_by = number
-        again = "press Ctrl-C again" if number == signal.SIGINT else "send the signal again"
-        click.echo(f"\nStopping after this turn; {again} to stop at once.", err=True)
-
-
-def _exit_code(number: int) -> int:
-    """Return what a shell expects of a process that was ended by a signal."""
-    return 128 + number
-
-
-@contextlib.contextmanager
-def _stop_on_signals() -> Iterator[_Stop]:
-    stop = _Stop()
-    previous = {number: signal.signal(number, stop.handle) for number in _SIGNALS}
-    try:
-        yield stop
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
 
 
 def _summary(finished: Run, unit: str) -> Table:

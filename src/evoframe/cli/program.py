@@ -18,6 +18,7 @@ from evoframe.cli.export import export
 from evoframe.cli.plugins import plugins
 from evoframe.cli.resume import resume
 from evoframe.cli.run import run
+from evoframe.cli.signals import exit_code
 from evoframe.cli.simulate import simulate
 from evoframe.cli.verify import verify
 from evoframe.errors import EvoframeError, PluginWarning, RunError
@@ -59,7 +60,7 @@ class _Program(click.Group):
             raise _failure(error) from error
         except KeyboardInterrupt as interrupt:
             click.echo("Interrupted", err=True)
-            raise click.exceptions.Exit(128 + signal.SIGINT) from interrupt
+            raise click.exceptions.Exit(exit_code(signal.SIGINT)) from interrupt
 
     def _of_plugins(self, ctx: click.Context) -> click.Group:
         group = click.Group("evoframe")

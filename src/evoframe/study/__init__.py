@@ -1,0 +1,1 @@
+"""A study: a grid of configurations, each run several times, and the rows that come of it."""

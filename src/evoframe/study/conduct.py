@@ -1,0 +1,162 @@
+"""A study at work: what is missing is run, by as many processes as there are cores."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import contextlib
+import tomllib
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future
+from pathlib import Path
+from typing import Protocol
+
+import attrs
+import tomli_w
+
+from evoframe.errors import InputError
+from evoframe.files import read_text
+from evoframe.provenance import differences
+from evoframe.store import write_atomically
+from evoframe.study.plan import Planned, Study
+from evoframe.study.pool import End, Pool, end_of
+from evoframe.study.progress import Status, forget_failure, note_failure, status
+from evoframe.study.worker import Order
+
+__all__ = ["STUDY_FILE", "Watcher", "claim", "conduct", "survey"]
+
+STUDY_FILE = "study.toml"
+
+_INTERVAL = 0.25  # s, between two looks at what the workers tell
+
+
+class Watcher(Protocol):
+    """Is told how a study goes on."""
+
+    def began(self, planned: Planned) -> None:
+        """Work on a run begins."""
+
+    def told(self, planned: Planned, turn: int, best: float | None) -> None:
+        """A run has finished a turn; *best* is its best score since work on it began."""
+
+    def ended(self, planned: Planned, end: End) -> None:
+        """Work on a run has ended."""
+
+    def looked(self) -> None:
+        """Some time has passed."""
+
+
+def claim(study: Study, directory: Path) -> None:
+    """Make the directory of a study, or make sure that it is one of this study.
+
+    More runs and more values of the grid are welcome; all other settings must be those that it has.
+
+    Raises:
+        InputError: It is the directory of another study, or of something else, or cannot be written.
+    """
+    path = directory / STUDY_FILE
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        occupied = not path.is_file() and any(directory.iterdir())
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
+    if occupied:
+        raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
+    tables = _tables(study)
+    if path.is_file():
+        others = differences(_shared(_read(path)), _shared(tables))
+        if others:
+            listed = "\n  ".join(others)
+            raise InputError(f"{path}: is another study; choose another directory:\n  {listed}")
+    write_atomically(path, tomli_w.dumps(tables).encode())
+
+
+def survey(study: Study, directory: Path, imported: Iterable[Path] = ()) -> dict[Planned, Status]:
+    """Return how far each run of a study is, in the order of work.
+
+    Args:
+        study: The study.
+        directory: Its directory.
+        imported: Directories of runs whose rows came from elsewhere, and that count as finished.
+
+    Raises:
+        InputError: One of them is damaged, or of another study.
+    """
+    elsewhere = set(imported)
+    return {
+        planned: Status("finished") if planned.directory in elsewhere else status(planned)
+        for planned in study.planned(directory)
+    }
+
+
+def conduct(
+    orders: Mapping[Planned, Order], workers: int, watcher: Watcher, stop: Callable[[], bool]
+) -> None:
+    """Make runs, or go on with them, as many at a time as there are workers.
+
+    Args:
+        orders: The runs, in the order of work, and what is said to the workers about each.
+        workers: The number of processes.
+        watcher: Is told how it goes on.
+        stop: Asked again and again whether to stop; what is running stops after its turn.
+    """
+    pool = Pool(workers)
+    with contextlib.ExitStack() as stack:
+        stack.callback(pool.close)
+        _Conduct(orders, workers, watcher, pool).work(stop)
+
+
+@attrs.define
+class _Conduct:
+    orders: Mapping[Planned, Order]
+    workers: int
+    watcher: Watcher
+    pool: Pool
+    running: dict[Future[End], Planned] = attrs.field(factory=dict, init=False)
+
+    def work(self, stop: Callable[[], bool]) -> None:
+        waiting = deque(self.orders)
+        while waiting or self.running:
+            if stop():
+                waiting.clear()
+                self.pool.ask_to_stop()
+            while waiting and len(self.running) < self.workers:
+                self._start(waiting.popleft())
+            done, _ = concurrent.futures.wait(self.running, _INTERVAL, FIRST_COMPLETED)
+            self._pass_on()
+            for future in done:
+                self._end(self.running.pop(future), end_of(future))
+            self.watcher.looked()
+
+    def _start(self, planned: Planned) -> None:
+        forget_failure(planned.directory)
+        self.running[self.pool.start(self.orders[planned])] = planned
+        self.watcher.began(planned)
+
+    def _pass_on(self) -> None:
+        running = {str(planned.directory): planned for planned in self.running.values()}
+        for directory, turn, best in self.pool.news():
+            if directory in running:
+                self.watcher.told(running[directory], turn, best)
+
+    def _end(self, planned: Planned, end: End) -> None:
+        if end.state == "failed":
+            note_failure(planned.directory, end.cause)
+        self.watcher.ended(planned, end)
+
+
+def _tables(study: Study) -> dict[str, object]:
+    """Return the study as TOML tables that need no other file."""
+    return {"extends": False, "runs": study.runs, **study.layers.merged(), "grid": dict(study.grid)}
+
+
+def _shared(tables: dict[str, object]) -> dict[str, object]:
+    """Return what all runs of a study share, and what decides them."""
+    return {key: value for key, value in tables.items() if key not in ("runs", "grid", "executor")}
+
+
+def _read(path: Path) -> dict[str, object]:
+    try:
+        return tomllib.loads(read_text(path, 16))
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from error

@@ -1,0 +1,243 @@
+"""What a study consists of: its cells, the seeds of its runs, and where each of them lies."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import attrs
+
+from evoframe.config import RunConfig
+from evoframe.errors import ConfigurationError
+from evoframe.layers import Layer, Layers, Tree, layer_of, read_layers
+from evoframe.plugins import Plugins
+from evoframe.resolve import resolved
+from evoframe.structuring import found
+
+__all__ = ["Cell", "Planned", "Study", "read_study", "shown", "study_names"]
+
+Settings: TypeAlias = tuple[tuple[str, Any], ...]
+"""Dotted key and value, in the order of the grid."""
+
+_KEY = re.compile(r"[a-z0-9_-]+(\.[a-z0-9_-]+)*")
+_PLAIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,60}")
+_OWN_KEYS = ("runs", "grid")
+_MOST_RUNS = 1_000_000
+
+
+@attrs.frozen(eq=False)
+class Cell:
+    """One configuration of a study.
+
+    Attributes:
+        settings: What distinguishes it from the others.
+        config: All of it; the seed is that of the study.
+    """
+
+    settings: Settings
+    config: RunConfig = attrs.field(repr=False)
+
+    @property
+    def label(self) -> str:
+        """What a person calls it: ``aggregator=am, collaboration.n=2``."""
+        return ", ".join(f"{key}={shown(value)}" for key, value in self.settings) or "all"
+
+    @property
+    def folder(self) -> Path:
+        """Where its runs lie in the directory of the study: a level for each key."""
+        return Path(*(f"{key}={_plain(value)}" for key, value in self.settings))
+
+    @property
+    def pairs(self) -> int:
+        """How many pairs a run scores, those that it has scored before included; the meeting at the end apart."""
+        sizes = [population.size for population in self.config.populations.values()]
+        strategy = self.config.collaboration.component
+        first = len({(a, b % sizes[1]) for a in range(sizes[0]) for b in range(max(sizes[1:]))})
+        turns = 0
+        for index, size in enumerate(sizes):
+            turns += size * min(strategy.size(other) for i, other in enumerate(sizes) if i != index)
+        return first + self.config.run.generations * turns
+
+    def seed(self, index: int) -> int:
+        """Return the seed of one of its runs, which depends on nothing else in the study."""
+        name = _identity([dict(self.settings), self.config.run.seed, index])
+        return int.from_bytes(hashlib.sha256(name.encode()).digest()[:6], "little")
+
+
+@attrs.frozen(eq=False)
+class Planned:
+    """One run of a study.
+
+    Attributes:
+        cell: Its configuration.
+        index: Which of the runs of its cell, from 0 up.
+        directory: Where it lies.
+    """
+
+    cell: Cell
+    index: int
+    directory: Path
+
+    @property
+    def seed(self) -> int:
+        """Its seed."""
+        return self.cell.seed(self.index)
+
+    @property
+    def label(self) -> str:
+        """What a person calls it."""
+        return f"{self.cell.label}, run {self.index}"
+
+    def deciding(self) -> Tree:
+        """Return the tables on which its result depends, as its own record has them."""
+        config = attrs.evolve(self.cell.config, run=attrs.evolve(self.cell.config.run, seed=self.seed))
+        return config.deciding()
+
+
+@attrs.frozen
+class Study:
+    """A study that was read and checked.
+
+    Attributes:
+        layers: The settings that all cells share.
+        label: What a person calls it.
+        grid: Dotted key -> the values that it takes.
+        runs: How often each cell is run.
+        cells: All combinations, the last key changing fastest.
+    """
+
+    layers: Layers = attrs.field(repr=False)
+    label: str
+    grid: Mapping[str, tuple[Any, ...]]
+    runs: int
+    cells: tuple[Cell, ...] = attrs.field(repr=False)
+
+    def planned(self, directory: Path) -> Iterator[Planned]:
+        """Yield all runs in the order of work: the first of every cell, then the second of every cell."""
+        for index in range(self.runs):
+            for cell in self.cells:
+                yield Planned(cell, index, directory / cell.folder / f"{index:02}")
+
+    def layers_of(self, planned: Planned) -> Layers:
+        """Return the configuration of one run, as it is resolved."""
+        return self.layers.under(
+            [*_layers(planned.cell.settings), layer_of("the study", "run.seed", planned.seed)]
+        )
+
+
+def study_names() -> list[str]:
+    """Return the names of the studies that come with evoframe."""
+    entries = files("evoframe").joinpath("studies").iterdir()
+    return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
+
+
+def read_study(source: str | Path, overrides: Iterable[str | Layer], plugins: Plugins) -> Study:
+    """Read and check a study, all of its cells.
+
+    Args:
+        source: Path of a TOML file, or the name of a study that comes with evoframe.
+        overrides: As for :func:`~evoframe.load_config`; ``runs`` and ``grid`` can be set too.
+        plugins: The plugins to choose from.
+
+    Raises:
+        ConfigurationError: With all faults of the first cell that has any.
+    """
+    read = read_layers(_file_of(source), overrides)
+    tree = read.merged()
+    origin = read.origin(("grid",))
+    runs, grid = _runs(tree, read.origin(("runs",))), _grid(tree, origin)
+    layers, label = read.without(*_OWN_KEYS), Path(source).stem
+    if runs * _size(grid) > _MOST_RUNS:
+        raise ConfigurationError(f"{origin}: a study of {runs * _size(grid)} runs; at most {_MOST_RUNS}")
+    cells = [
+        Cell(settings, resolved(layers.under(_layers(settings)), label, plugins))
+        for settings in _combinations(grid)
+    ]
+    return Study(layers, label, grid, runs, tuple(cells))
+
+
+def _file_of(source: str | Path) -> str | Path:
+    if source in study_names():
+        with_path: Any = files("evoframe").joinpath("studies", f"{source}.toml")
+        return str(with_path)
+    return source
+
+
+def _runs(tree: Mapping[str, Any], origin: str) -> int:
+    if "runs" not in tree:
+        raise ConfigurationError(f"{origin}: runs: is missing: how often each configuration is run")
+    runs = tree["runs"]
+    if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
+        raise ConfigurationError(f"{origin}: runs: expected a whole number from 1 up, found {found(runs)}")
+    return runs
+
+
+def _grid(tree: Mapping[str, Any], origin: str) -> dict[str, tuple[Any, ...]]:
+    """Return the grid; a quoted dotted key and a table within a table mean the same."""
+    if "grid" not in tree:
+        raise ConfigurationError(f"{origin}: grid: is missing: a table of keys, each with a list of values")
+    grid = dict(_axes(tree["grid"], (), origin))
+    for key, values in grid.items():
+        if key == "run.seed":
+            raise ConfigurationError(f"{origin}: grid: run.seed: seeds are derived; say with runs how many")
+        texts = [_identity(value) for value in values]
+        if not values or len(set(texts)) < len(texts):
+            raise ConfigurationError(
+                f"{origin}: grid.{key}: expected different values, found {found(list(values))}"
+            )
+    return grid
+
+
+def _axes(table: Any, path: tuple[str, ...], origin: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    if not isinstance(table, Mapping):
+        where = ".".join(("grid", *path))
+        raise ConfigurationError(f"{origin}: {where}: expected a list of values, found {found(table)}")
+    for key, value in table.items():
+        dotted = ".".join((*path, key))
+        if not _KEY.fullmatch(dotted):
+            raise ConfigurationError(f"{origin}: grid: '{dotted}' is no key of a configuration")
+        if isinstance(value, list):
+            yield dotted, tuple(value)
+        else:
+            yield from _axes(value, (*path, key), origin)
+
+
+def _combinations(grid: Mapping[str, tuple[Any, ...]]) -> Iterator[Settings]:
+    for values in itertools.product(*grid.values()):
+        yield tuple(zip(grid, values, strict=True))
+
+
+def _size(grid: Mapping[str, tuple[Any, ...]]) -> int:
+    size = 1
+    for values in grid.values():
+        size *= len(values)
+    return size
+
+
+def _layers(settings: Settings) -> list[Layer]:
+    return [layer_of(f"grid: {key}={shown(value)}", key, value) for key, value in settings]
+
+
+def shown(value: Any) -> str:
+    """Return a value of the grid as text, the same for the same value only."""
+    return value if isinstance(value, str) else _identity(value)
+
+
+def _identity(value: Any) -> str:
+    return json.dumps(value, sort_keys=True, default=str)
+
+
+def _plain(value: Any) -> str:
+    """Return a value as the name of a folder, the same for the same value only."""
+    text = shown(value)
+    if _PLAIN.fullmatch(text):
+        return text
+    name = value.get("name", "") if isinstance(value, Mapping) else ""
+    digest = hashlib.sha256(_identity(value).encode()).hexdigest()[:8]
+    return f"{name}-{digest}" if isinstance(name, str) and _PLAIN.fullmatch(name) else digest

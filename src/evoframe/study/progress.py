@@ -1,0 +1,81 @@
+"""How far the runs of a study are."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+import attrs
+
+from evoframe.errors import InputError
+from evoframe.files import read_text
+from evoframe.loading import has_begun, load_run
+from evoframe.store import CONFIG_FILE, write_json
+from evoframe.study.plan import Planned
+
+__all__ = ["FAILURE_FILE", "Status", "forget_failure", "note_failure", "status"]
+
+FAILURE_FILE = "failure.json"
+"""In the directory of a run that failed: why."""
+
+State: TypeAlias = Literal["missing", "begun", "failed", "finished"]
+
+
+@attrs.frozen
+class Status:
+    """How far a run is.
+
+    Attributes:
+        state: ``missing``, ``begun``, ``failed`` or ``finished``.
+        cause: Why it failed.
+    """
+
+    state: State
+    cause: str = ""
+
+
+def status(planned: Planned) -> Status:
+    """Return how far a run is.
+
+    Raises:
+        InputError: Its directory is damaged, or holds the run of another study.
+    """
+    directory = planned.directory
+    failure = directory / FAILURE_FILE
+    if failure.is_file():
+        return Status("failed", _cause(failure))
+    if not (directory / CONFIG_FILE).is_file():
+        return Status("missing")
+    if not has_begun(directory):
+        return Status("begun")
+    run = load_run(directory)
+    _refuse_another(planned, run.configuration)
+    return Status("finished" if run.finished else "begun")
+
+
+def note_failure(directory: Path, cause: str) -> None:
+    """Note why a run failed, so that it is not begun again before somebody asks for that."""
+    directory.mkdir(parents=True, exist_ok=True)
+    write_json(directory / FAILURE_FILE, {"cause": cause})
+
+
+def forget_failure(directory: Path) -> None:
+    """Let a run that failed be tried again."""
+    (directory / FAILURE_FILE).unlink(missing_ok=True)
+
+
+def _cause(path: Path) -> str:
+    with contextlib.suppress(ValueError, KeyError, TypeError):
+        return str(json.loads(read_text(path, 1))["cause"])
+    return "unknown"
+
+
+def _refuse_another(planned: Planned, configuration: object) -> None:
+    expected = json.loads(json.dumps(planned.deciding()))
+    if configuration != expected:
+        raise InputError(
+            f"{planned.directory}: is a run of another study: its configuration is not that of "
+            f"'{planned.label}'; choose another directory with --out"
+        )

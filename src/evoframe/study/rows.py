@@ -1,0 +1,218 @@
+"""What is left of a run in a study: a row of final figures, and how they came about."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import attrs
+
+from evoframe.errors import InputError
+from evoframe.files import read_text
+from evoframe.loading import Run, load_run
+from evoframe.store import CHAMPION_FILE, write_atomically
+from evoframe.study.plan import Planned, shown
+
+__all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "write_rows"]
+
+ROWS_FILE = "rows.csv"
+CURVES_FILE = "curves.csv"
+"""Beside the rows: for each two lines, ``fitness`` and ``score``, with a number for each generation."""
+
+_LARGEST = 64  # MiB
+
+T = TypeVar("T")
+
+
+@attrs.frozen
+class Row:
+    """A finished run of a study.
+
+    Attributes:
+        settings: Dotted key -> value as text: what distinguishes its cell from the others.
+        run: Which of the runs of its cell, from 0 up.
+        seed: Its seed.
+        configuration: Digest of all tables on which its result depends.
+        evoframe: The version that made it.
+        fitness: The best fitness in the last generation: an average of scores, with the collaborators there.
+        score: The score of the best pair that was simulated: the same yardstick for all cells.
+        fittest_pair_score: The score of the fittest of each population, as a pair.
+        pairs: How many pairs it needed.
+        simulations: How many of them were simulated: the others are repeats.
+        seconds: How long its turns took.
+        champion: SHA-256 of champion.json.
+        fitness_curve: For each generation, from 0 up, the best fitness of any population.
+        score_curve: For each generation the score of the best pair so far.
+    """
+
+    settings: Mapping[str, str]
+    run: int
+    seed: int
+    configuration: str
+    evoframe: str
+    fitness: float
+    score: float
+    fittest_pair_score: float
+    pairs: int
+    simulations: int
+    seconds: float
+    champion: str
+    fitness_curve: tuple[float, ...] = ()
+    score_curve: tuple[float, ...] = ()
+
+
+_COLUMNS: Mapping[str, Callable[[str], Any]] = {
+    "run": int,
+    "seed": int,
+    "configuration": str,
+    "evoframe": str,
+    "fitness": float,
+    "score": float,
+    "fittest_pair_score": float,
+    "pairs": int,
+    "simulations": int,
+    "seconds": float,
+    "champion": str,
+}
+
+
+def digest(planned: Planned) -> str:
+    """Return the digest of all tables on which the result of a run depends."""
+    text = json.dumps(planned.deciding(), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def row_of(planned: Planned) -> Row:
+    """Return what is left of a finished run.
+
+    Raises:
+        InputError: Its directory is damaged.
+    """
+    run = load_run(planned.directory)
+    work, summary = run.workload, run.summary
+    fitness, score = _fitness_curve(run), _score_curve(run, len(planned.cell.config.populations))
+    return Row(
+        settings={key: shown(value) for key, value in planned.cell.settings},
+        run=planned.index,
+        seed=planned.seed,
+        configuration=digest(planned),
+        evoframe=str(run.config.get("provenance", {}).get("evoframe", "")),
+        fitness=fitness[-1],
+        score=summary["best_pair_score"],
+        fittest_pair_score=summary["fittest_pair_score"],
+        pairs=sum(row["pairs"] for row in work),
+        simulations=sum(row["simulations"] for row in work),
+        seconds=round(sum(row["seconds"] for row in work), 3),
+        champion=hashlib.sha256((run.directory / CHAMPION_FILE).read_bytes()).hexdigest(),
+        fitness_curve=fitness,
+        score_curve=score,
+    )
+
+
+def _fitness_curve(run: Run) -> tuple[float, ...]:
+    best: dict[int, float] = {}
+    for row in run.turns:
+        generation = row["generation"]
+        best[generation] = max(row["best"], best.get(generation, row["best"]))
+    return tuple(best[generation] for generation in sorted(best))
+
+
+def _score_curve(run: Run, populations: int) -> tuple[float, ...]:
+    """Return the best score so far at the end of each generation, in which every population has its turn."""
+    ends = range(0, len(run.workload), populations)
+    found = run.table("best_pairs")
+    return tuple(
+        max((row["score"] for row in found if row["turn"] <= end), default=float("nan")) for end in ends
+    )
+
+
+def write_rows(rows: Sequence[Row], path: Path) -> None:
+    """Write rows as a table, and their curves beside it.
+
+    Raises:
+        RunError: They cannot be written.
+    """
+    keys = _keys(rows)
+    figures = [[getattr(row, name) for name in _COLUMNS] for row in rows]
+    table = [[*_settings(row, keys), *values] for row, values in zip(rows, figures, strict=True)]
+    write_atomically(path, _csv([*keys, *_COLUMNS], table))
+    curves = [
+        [*_settings(row, keys), row.run, name, *(f"{value:.6g}" for value in curve)]
+        for row in rows
+        for name, curve in (("fitness", row.fitness_curve), ("score", row.score_curve))
+    ]
+    generations = range(max((len(row.fitness_curve) for row in rows), default=0))
+    write_atomically(path.with_name(CURVES_FILE), _csv([*keys, "run", "curve", *generations], curves))
+
+
+def _settings(row: Row, keys: Iterable[str]) -> list[str]:
+    return [row.settings.get(key, "") for key in keys]
+
+
+def _keys(rows: Iterable[Row]) -> list[str]:
+    return list(dict.fromkeys(key for row in rows for key in row.settings))
+
+
+def _csv(columns: Sequence[Any], lines: Iterable[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(lines)
+    return text.getvalue().encode()
+
+
+def read_rows(path: Path) -> list[Row]:
+    """Return the rows of a table, with their curves if these lie beside it.
+
+    Raises:
+        InputError: It cannot be read, or is no such table; says where.
+    """
+    curves = path.with_name(CURVES_FILE)
+    drawn = _curves(curves) if curves.is_file() else {}
+    rows = []
+    for number, line in enumerate(_table(path), start=2):
+        settings = {key: value for key, value in line.items() if key not in _COLUMNS}
+        try:
+            figures = {name: kind(line[name]) for name, kind in _COLUMNS.items()}
+        except (KeyError, TypeError, ValueError) as error:
+            raise InputError(f"{path}: line {number}: is no row of a study: {error}") from error
+        key = (tuple(settings.items()), figures["run"])
+        rows.append(
+            Row(
+                settings,
+                **figures,
+                fitness_curve=drawn.get((*key, "fitness"), ()),
+                score_curve=drawn.get((*key, "score"), ()),
+            )
+        )
+    return rows
+
+
+def _table(path: Path) -> list[dict[str, str]]:
+    try:
+        lines = list(csv.DictReader(io.StringIO(read_text(path, _LARGEST)), strict=True))
+    except csv.Error as error:
+        raise InputError(f"{path}: is no table: {error}") from error
+    if any(None in line or None in line.values() for line in lines):
+        raise InputError(f"{path}: is no table: its lines are of different lengths")
+    return lines
+
+
+def _curves(path: Path) -> dict[tuple[Any, ...], tuple[float, ...]]:
+    found = {}
+    for number, line in enumerate(_table(path), start=2):
+        generations = [key for key in line if key.isdecimal()]
+        settings = tuple(
+            (key, value) for key, value in line.items() if key not in ("run", "curve", *generations)
+        )
+        try:
+            values = tuple(float(line[key]) for key in generations if line[key])
+            found[settings, int(line["run"]), line["curve"]] = values
+        except (KeyError, ValueError) as error:
+            raise InputError(f"{path}: line {number}: is no curve of a study: {error}") from error
+    return found

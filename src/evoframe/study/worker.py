@@ -1,0 +1,98 @@
+"""What a process of a study does: one run after the other, each from where it was left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from evoframe.config import RunConfig
+from evoframe.discovery import discover
+from evoframe.hookspecs import hookimpl
+from evoframe.layers import Layer, Layers, layer_of
+from evoframe.observers import Observers
+from evoframe.plugins import Plugins
+from evoframe.resolve import resolved
+from evoframe.resuming import reopen
+from evoframe.run import Execution, prepare
+from evoframe.store import CONFIG_FILE
+from evoframe.values import Turn
+
+__all__ = ["Order", "Talk", "perform"]
+
+
+@attrs.frozen
+class Order:
+    """One run that shall be made.
+
+    Attributes:
+        directory: Where to.
+        layers: Its configuration.
+        label: What a person calls the study.
+        modules: Local plugins.
+    """
+
+    directory: Path
+    layers: Layers
+    label: str
+    modules: tuple[str, ...]
+
+
+@attrs.frozen
+class Talk:
+    """How a process of a study and the one that started it talk; both fields work across processes.
+
+    Attributes:
+        tell: Takes a directory, the latest turn, and the best score so far.
+        stop: Says whether to stop after the turn in progress.
+    """
+
+    tell: Callable[[tuple[str, int, float | None]], None]
+    stop: Callable[[], bool]
+
+
+def perform(order: Order, talk: Talk) -> bool:
+    """Begin a run, or go on with it; return whether it came to its end.
+
+    Raises:
+        EvoframeError: It cannot be made, or cannot go on.
+    """
+    plugins = discover(order.modules)
+    execution = _execution(order, plugins)
+    plugins.manager.register(_Teller(str(order.directory), talk), name="evoframe:study")
+    completed = execution.play(Observers(plugins.manager), talk.stop)
+    if completed:
+        execution.verify()
+    return completed
+
+
+def _execution(order: Order, plugins: Plugins) -> Execution:
+    config = resolved(order.layers, order.label, plugins)
+    alone = _alone(config)
+    if (order.directory / CONFIG_FILE).exists():
+        return reopen(order.directory, alone, plugins)
+    return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+
+
+def _alone(config: RunConfig) -> list[Layer]:
+    """Return what lets the executor work on one core: the others have runs of their own."""
+    component: Any = type(config.executor.component)
+    if "workers" not in attrs.fields_dict(component):
+        return []
+    return [layer_of("one worker for each run", "executor.workers", 1)]
+
+
+class _Teller:
+    """Tells of every turn."""
+
+    def __init__(self, directory: str, talk: Talk) -> None:
+        self._directory, self._talk = directory, talk
+        self._best: float | None = None
+
+    @hookimpl
+    def evoframe_turn_finished(self, turn: Turn) -> None:
+        if turn.best_pair is not None:
+            self._best = turn.best_pair.score
+        self._talk.tell((self._directory, turn.index, self._best))
