@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 __all__ = ["CHAINED", "SINGLE", "Checksums"]
@@ -26,7 +26,7 @@ class Checksums:
 
     def add(self, table: str, rows: Iterable[Row]) -> None:
         """Take rows in that follow those before, in the order of their keys."""
-        self._hashes[table].update(_text(rows))
+        self._hashes[table].update(_text(rows, _json))
 
     def of(self, table: str) -> tuple[str, str]:
         """Return the name and the checksum of a table that grows."""
@@ -35,36 +35,40 @@ class Checksums:
     @staticmethod
     def of_row(table: str, row: Row) -> tuple[str, str]:
         """Return the name and the checksum of a row that can be replaced."""
-        checksum = _new_hash()
-        checksum.update(_text([row]))
-        return f"{table}:{row[0]}", checksum.hexdigest()
+        return f"{table}:{row[0]}", _checksum([row], _json)
 
-    @classmethod
-    def of_rows(cls, table: str, rows: Iterable[Row]) -> Iterator[tuple[str, str]]:
+    @staticmethod
+    def of_rows(table: str, rows: Iterable[Row]) -> Iterator[tuple[str, str]]:
         """Yield the names and checksums of all *rows* of a table, as they were read."""
         if table in SINGLE:
-            yield from (cls.of_row(table, row) for row in rows)
+            yield from ((f"{table}:{row[0]}", _checksum([row], _json_of_anything)) for row in rows)
         elif table in CHAINED:
-            checksums = cls()
-            checksums.add(table, rows)
-            yield checksums.of(table)
+            yield table, _checksum(rows, _json_of_anything)
 
 
 def _new_hash() -> hashlib.blake2b:
     return hashlib.blake2b(digest_size=16)
 
 
-def _text(rows: Iterable[Row]) -> bytes:
+def _checksum(rows: Iterable[Row], json_of: Callable[[list[Row]], str]) -> str:
+    checksum = _new_hash()
+    checksum.update(_text(rows, json_of))
+    return checksum.hexdigest()
+
+
+def _text(rows: Iterable[Row], json_of: Callable[[list[Row]], str]) -> bytes:
     """Return rows as one text, which is the same however they are parted into calls."""
     listed = list(rows)
-    text = _json(listed)
+    text = json_of(listed)
     if "-0.0," in text or "-0.0]" in text:  # the database keeps no sign of a zero
-        text = _json([[_signless(value) for value in row] for row in listed])
+        text = json_of([[_signless(value) for value in row] for row in listed])
     return f"{text[1:-1]},".encode() if listed else b""
 
 
+_json: Callable[[list[Row]], str] = json.JSONEncoder(separators=(",", ":")).encode
+
 # What is no JSON is the bytes of a damaged database.
-_json = json.JSONEncoder(separators=(",", ":"), default=repr).encode
+_json_of_anything: Callable[[list[Row]], str] = json.JSONEncoder(separators=(",", ":"), default=repr).encode
 
 
 def _signless(value: Any) -> Any:

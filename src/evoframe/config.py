@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
@@ -28,6 +29,7 @@ __all__ = [
     "PopulationConfig",
     "RunConfig",
     "RunSettings",
+    "is_role",
 ]
 
 C = TypeVar("C")
@@ -154,6 +156,11 @@ class RunConfig:
     def to_toml(self) -> str:
         """Return the configuration as the text of a TOML file that means the same."""
         return tomli_w.dumps(self.tables())
+
+
+def is_role(name: str) -> bool:
+    """Return whether a population may be called so."""
+    return re.fullmatch(r"[a-z][a-z0-9_-]*", name) is not None
 
 
 def _table(chosen: Chosen[Any]) -> Tree:

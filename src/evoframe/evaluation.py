@@ -160,7 +160,9 @@ def _score(outcome: Outcome, record: Record, objective: Objective) -> Score:
     if not isinstance(outcome, Outcome):
         raise ComponentError("simulator", f"returned no Outcome, but {type(outcome).__name__}")
     if outcome.diverged_at is not None:
-        return Score(None, outcome.diverged_at)
+        if not isinstance(outcome.diverged_at, numbers.Integral):
+            raise ComponentError("simulator", f"says that it diverged at step {outcome.diverged_at!r}")
+        return Score(None, int(outcome.diverged_at))
     _refuse_tracks(outcome, record)
     with blaming("objective"):
         score = objective.score(outcome)

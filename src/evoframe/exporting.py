@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 
-from evoframe.errors import ConfigurationError, InputError
+from evoframe.errors import EvoframeError
 from evoframe.protocols import Simulator
 from evoframe.values import Design, Export
 
@@ -36,8 +36,9 @@ def exports(simulator: Simulator, design: Design) -> dict[str, bytes | None]:
 def _exported(simulator: Simulator, design: Design, format_: str) -> bytes | None:
     try:
         export = export_design(simulator, design, format_)
-    except (ConfigurationError, InputError) as error:
-        _log.warning("there is no %s file of the champion: %s", format_, error)
+    except Exception as error:  # noqa: BLE001 - the run does not depend on it
+        cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
+        _log.warning("there is no %s file of the champion: %s", format_, cause)
         return None
     for entry in export.left_out:
         _log.info("the %s file of the champion leaves out: %s", format_, entry)

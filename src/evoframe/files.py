@@ -42,11 +42,18 @@ def refuse_links(directory: Path) -> None:
     """
     try:
         for path in directory.iterdir():
-            mode = path.lstat().st_mode
+            mode = _mode(path)
             if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
                 what = "a link" if stat.S_ISLNK(mode) else "no file"
                 raise InputError(f"{path}: is {what}; a run's directory has nothing but files")
     except FileNotFoundError:
-        return  # a journal that has just gone, or no directory: whoever reads it says so
+        return  # no directory: whoever reads it says so
     except OSError as error:
         raise InputError(f"{directory}: cannot be read: {error.strerror}") from error
+
+
+def _mode(path: Path) -> int:
+    try:
+        return path.lstat().st_mode
+    except FileNotFoundError:  # a journal that has just gone
+        return stat.S_IFREG

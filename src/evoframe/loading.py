@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sqlite3
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,6 +14,7 @@ import attrs
 
 from evoframe.champion import LARGEST_DOCUMENT, champion_from_json, parsed_json
 from evoframe.checksums import CHAINED, SINGLE, Checksums
+from evoframe.config import is_role
 from evoframe.errors import InputError
 from evoframe.files import read_text, refuse_links
 from evoframe.store import CHAMPION_FILE, CONFIG_FILE, DATABASE_FILE, RUN_FORMAT, schema
@@ -151,7 +153,9 @@ class Run:
         path, document = self.directory / CHAMPION_FILE, self.champion_document
         if document is None:
             return True
-        return path.is_file() and path.read_bytes() == f"{document}\n".encode()
+        expected = f"{document}\n".encode()
+        same_size = path.is_file() and path.stat().st_size == len(expected)
+        return same_size and path.read_bytes() == expected
 
     @property
     def verification(self) -> Verification | None:
@@ -211,6 +215,7 @@ class Run:
             columns, rows = [column[0] for column in found.description], found.fetchall()
             if name in (*CHAINED, *SINGLE):
                 _compare_checksums(path, name, rows, _checksums(database))
+                _refuse_types(path, name, rows, _types(database, name))
             return columns, rows
 
 
@@ -250,6 +255,8 @@ def run_tables(directory: Path) -> dict[str, Any]:
         found = repr(tables["extends"]) if "extends" in tables else "nothing"
         what = "extends: a run's configuration is complete"
         raise InputError(f"{path}: {what}; expected false, found {found}")
+    if not isinstance(tables.get("provenance", {}), dict):
+        raise InputError(f"{path}: provenance: expected a table, found {tables['provenance']!r}")
     return tables
 
 
@@ -270,20 +277,34 @@ _SETTLED = ("format", "configuration")  # keys of meta that stand there from the
 
 
 def _refuse_other_databases(directory: Path, config: Mapping[str, Any]) -> None:
-    """Look at the format first, since another may have other tables; beside ours there is nothing else."""
-    path = directory / DATABASE_FILE
+    """Look at the format first, since another may have other tables; beside ours there is nothing else.
+
+    What a database says of its own form is read before anything else, and nothing is asked of a table that is
+    not to the letter one of ours: a view may be called like one.
+    """
+    path, roles = directory / DATABASE_FILE, _roles(config)
+    expected = schema(roles)
     with _reading(path) as database:
-        found = [row[0] for row in database.execute("SELECT value FROM meta WHERE key = 'format'")]
         statements = [row[0] for row in database.execute("SELECT sql FROM sqlite_master")]
+        meta = [statement for statement in expected if statement in statements and " meta " in statement]
+        asked = database.execute("SELECT value FROM meta WHERE key = 'format'") if meta else ()
+        found = [row[0] for row in asked]
     if found != [str(RUN_FORMAT)]:
         what = f"the format {found[0]!r}" if found else "no format"
         raise InputError(
             f"{directory}: has {what}, but this evoframe reads format {RUN_FORMAT}; read it with the "
             f"evoframe that wrote it: {CONFIG_FILE} names its version under [provenance]"
         )
-    populations = config.get("populations")
-    if not isinstance(populations, dict) or set(statements) != set(schema(populations)):
+    if not roles or set(statements) != set(expected):
         raise InputError(f"{path}: is damaged: its tables are not those of a run with this {CONFIG_FILE}")
+
+
+def _roles(config: Mapping[str, Any]) -> list[str]:
+    """Return the populations of a configuration, which become names of columns; none if they cannot."""
+    populations = config.get("populations")
+    if not isinstance(populations, dict) or not all(map(is_role, populations)):
+        return []
+    return list(populations)
 
 
 @contextlib.contextmanager
@@ -301,9 +322,28 @@ def _reading(path: Path) -> Iterator[sqlite3.Connection]:
             database.execute("PRAGMA trusted_schema = OFF")
             database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_DOCUMENT << 20)
             database.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
+            budget = iter(range(_STEPS_PER_BYTE * _size(path) // _STEPS + 100))
+            database.set_progress_handler(lambda: next(budget, None) is None, _STEPS)
             yield database
     except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read: {error}") from error
+        raise InputError(f"{path}: cannot be read: {error}{_hint(path)}") from error
+
+
+def _hint(path: Path) -> str:
+    journal = path.with_name(f"{path.name}-wal")
+    if not journal.is_file() or os.access(path.parent, os.W_OK):
+        return ""
+    return f"; to read what {journal.name} has, copy the directory to where it may be written"
+
+
+# Pages that refer to each other in a made-up database may hold more rows than a computer can count.
+_STEPS_PER_BYTE = 20  # of SQLite's machine: some fifty times what a table takes that is read whole
+_STEPS = 100_000
+
+
+def _size(path: Path) -> int:
+    """Return the bytes of a database and of what was written beside it."""
+    return sum(part.stat().st_size for part in (path, path.with_name(f"{path.name}-wal")) if part.is_file())
 
 
 def _tables(database: sqlite3.Connection) -> list[str]:
@@ -315,6 +355,24 @@ def _checksums(database: sqlite3.Connection) -> dict[str, str]:
     return {
         str(name): checksum for name, checksum in database.execute("SELECT name, checksum FROM checksums")
     }
+
+
+def _types(database: sqlite3.Connection, table: str) -> list[tuple[type, ...]]:
+    """Return the types that the columns of one of our tables may have: SQLite itself takes any."""
+    found = database.execute('SELECT type, "notnull", pk FROM pragma_table_info(?)', (table,))
+    kinds: dict[str, type] = {"INTEGER": int, "REAL": float, "TEXT": str}
+    return [
+        (kinds[declared],) if needed or key else (kinds[declared], type(None))
+        for declared, needed, key in found
+    ]
+
+
+def _refuse_types(
+    path: Path, table: str, rows: Sequence[tuple[Any, ...]], types: Sequence[tuple[type, ...]]
+) -> None:
+    for row in rows:
+        if not all(map(isinstance, row, types)):
+            raise InputError(f"{path}: is damaged: {table} has a row with values of other types: {row}")
 
 
 def _compare_checksums(

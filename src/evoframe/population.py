@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+import numbers
 from collections.abc import Sequence
 from typing import Any
 
@@ -50,7 +52,7 @@ class Population:
         """Replace the genomes by the next ones; at first, by the initial ones."""
         with blaming(self._evolver):
             genomes = self.evolver.ask()
-            members = tuple(self.evolver.members())
+            members = tuple(self._plain(member) for member in self.evolver.members())
             counts = len(genomes), len(members)
         if counts[0] < 1 or counts[0] != counts[1] or counts[0] != (len(self.genomes) or counts[0]):
             wanted = f", expected {len(self.genomes)} of each" if self.genomes else ""
@@ -69,7 +71,9 @@ class Population:
     def dump(self, position: int) -> Any:
         """Return the genome at *position* as JSON values."""
         with blaming(self._evolver, self.called(position)):
-            return self.evolver.dump(self.genomes[position])
+            genome = self.evolver.dump(self.genomes[position])
+            json.dumps(genome, allow_nan=False)  # what cannot be saved is said here, by whose it is
+            return genome
 
     def decode(self, position: int, design: Design) -> Design:
         """Return a design to which the genome at *position* has added what it provides.
@@ -177,16 +181,28 @@ class Population:
         self._networks.clear()
         self.members = tuple(
             attrs.evolve(member, diverged=diverged)
-            for member, diverged in zip(self.evolver.members(), saved.diverged, strict=True)
+            for member, diverged in zip(map(self._plain, self.evolver.members()), saved.diverged, strict=True)
         )
         self._best_so_far, self._lowest, self._champion = saved.best_so_far, saved.lowest, saved.champion
 
     def _note_members(self, fitness: NDArray[np.float64], diverged: Sequence[bool]) -> None:
         with blaming(self._evolver):
             self.members = tuple(
-                attrs.evolve(member, fitness=float(value), diverged=failed)
+                attrs.evolve(self._plain(member), fitness=float(value), diverged=failed)
                 for member, value, failed in zip(self.evolver.members(), fitness, diverged, strict=True)
             )
+
+    def _plain(self, member: Member) -> Member:
+        """Return a member whose numbers are Python's, as the record wants them."""
+        given = (member.id, member.genome_size, member.age)
+        wrong = [value for value in given if not isinstance(value, numbers.Integral)]
+        if not isinstance(member.species, numbers.Integral | None):
+            wrong.append(member.species)
+        if wrong:
+            raise ComponentError(self._evolver, f"gave a member with {wrong[0]!r} where an integer belongs")
+        key, size, age = map(int, given)
+        species = None if member.species is None else int(member.species)
+        return attrs.evolve(member, id=key, genome_size=size, age=age, species=species)
 
     def _note_champion(self) -> None:
         """Let the fittest challenge the champion at the champion's latest fitness (as the authors do)."""

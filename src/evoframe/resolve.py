@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -11,7 +10,7 @@ from typing import Any, TypeVar, cast
 import attrs
 from attrs import validators
 
-from evoframe.config import Chosen, PluginSettings, PopulationConfig, RunConfig, RunSettings
+from evoframe.config import Chosen, PluginSettings, PopulationConfig, RunConfig, RunSettings, is_role
 from evoframe.discovery import discover
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.layers import COMPONENTS, POPULATION_COMPONENTS, Layer, Layers, Tree, layer_of, read_layers
@@ -22,7 +21,6 @@ from evoframe.structuring import Fault, StructureError, found, structure
 __all__ = ["load_config", "named_simulator", "resolved"]
 
 C = TypeVar("C")
-_ROLE = re.compile(r"[a-z][a-z0-9_-]*")
 _RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
 
 
@@ -199,7 +197,7 @@ class _Reading:
         path = ("populations", role)
         if role in _RESERVED_ROLES:
             self.faults.append(Fault(path, f"'{role}' is a column of the database; choose another name"))
-        elif not _ROLE.fullmatch(role):
+        elif not is_role(role):
             self.faults.append(Fault(path, f"'{role}': use lower-case letters, digits, - and _"))
         if not isinstance(table, Mapping):
             self.faults.append(Fault(path, f"expected a table, found {found(table)}"))

@@ -20,7 +20,7 @@ from evoframe.plugins import Plugins
 from evoframe.provenance import differences, provenance
 from evoframe.resolve import load_config
 from evoframe.run import Execution, assemble, opened_store, verify_champion
-from evoframe.store import CONFIG_FILE, Store
+from evoframe.store import CONFIG_FILE, Store, is_leftover, remove
 
 __all__ = ["configuration_of", "is_finished", "reopen", "restore", "resume"]
 
@@ -100,7 +100,7 @@ def reopen(
     with released_on_error(lock):
         config = configuration_of(directory, overrides, plugins)
         saved = load_run(directory) if has_begun(directory) else None
-        changes = _changes(directory, config, saved, allowed=allow_different_versions)
+        changes = _changes(directory, config, allowed=allow_different_versions)
         coevolution = assemble(config)
         try:
             if saved is not None:
@@ -119,31 +119,42 @@ def reopen(
 def configuration_of(directory: Path, overrides: Sequence[str | Layer], plugins: Plugins | None) -> RunConfig:
     """Return the configuration of a run, which is complete: it must not make us read other files.
 
+    What decides the run must be as it was when it began, in the file as with the overrides.
+
     Args:
         directory: The run's directory.
         overrides: Settings of the executor.
         plugins: The plugins to choose from.
 
     Raises:
-        ConfigurationError: It cannot be accepted.
-        InputError: It is not complete.
+        ConfigurationError: It cannot be accepted, or is not that of the run; says what differs.
+        InputError: It is not complete, or the run is damaged.
     """
     run_tables(directory)  # refuses what would make us look elsewhere
-    return load_config(directory / CONFIG_FILE, overrides=overrides, plugins=plugins)
-
-
-def _changes(directory: Path, config: RunConfig, saved: Run | None, *, allowed: bool) -> list[str]:
-    """Return what is not as when the run began.
-
-    Raises:
-        ConfigurationError: The configuration is another one, or something else differs without being allowed.
-    """
-    if saved is None:
-        return []
-    others = differences(saved.configuration, json.loads(json.dumps(config.deciding())))
+    path = directory / CONFIG_FILE
+    config = load_config(path, overrides=overrides, plugins=plugins)
+    if has_begun(directory):
+        began: Mapping[str, Any] = load_run(directory).configuration
+    else:
+        began = _as_saved(load_config(path, plugins=plugins))
+    others = differences(began, _as_saved(config))
     if others:
         raise ConfigurationError(_listed(f"{directory}: the configuration is not that of the run", others))
-    changes = differences(saved.config.get("provenance", {}), provenance(config))
+    return config
+
+
+def _as_saved(config: RunConfig) -> Mapping[str, Any]:
+    tables: Mapping[str, Any] = json.loads(json.dumps(config.deciding()))
+    return tables
+
+
+def _changes(directory: Path, config: RunConfig, *, allowed: bool) -> list[str]:
+    """Return what is not as when the run began, apart from its configuration.
+
+    Raises:
+        ConfigurationError: There is something, and that is not allowed.
+    """
+    changes = differences(run_tables(directory).get("provenance", {}), provenance(config))
     if changes and not allowed:
         todo = "to go on all the same, which is noted: --allow-different-versions"
         raise ConfigurationError(
@@ -179,8 +190,9 @@ def restore(coevolution: Coevolution, saved: Run) -> None:
 
 def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:
     """Complete or remove what a kill has left half done, and note the resume."""
-    for leftover in saved.directory.glob(".*.new"):
-        leftover.unlink(missing_ok=True)
+    for path in saved.directory.iterdir():
+        if is_leftover(path):
+            remove(path)
     rows: Mapping[str, Any] = {table: saved.rows(table) for table in CHAINED}
     store.go_on(rows, (len(rows["resumes"]), saved.last_turn, json.dumps(changes)))
     if saved.champion_document is not None and not saved.champion_is_written:

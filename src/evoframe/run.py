@@ -27,7 +27,7 @@ from evoframe.population import Population
 from evoframe.provenance import provenance
 from evoframe.randomness import stream
 from evoframe.resolve import load_config
-from evoframe.store import CONFIG_FILE, Store, write_atomically, write_json
+from evoframe.store import CONFIG_FILE, Store, is_leftover, write_atomically, write_json
 from evoframe.values import Design, Turn
 from evoframe.verification import VERIFICATION_FILE, Verification, can_verify, verify_design
 
@@ -307,7 +307,7 @@ def _given_directory(directory: Path) -> Path:
 
 def _refuse_occupied(directory: Path) -> None:
     try:
-        names = {path.name for path in directory.iterdir()} - {LOCK_FILE}
+        names = {path.name for path in directory.iterdir() if not is_leftover(path)} - {LOCK_FILE}
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
     if CONFIG_FILE in names:

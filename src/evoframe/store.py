@@ -26,6 +26,8 @@ __all__ = [
     "DATABASE_FILE",
     "RUN_FORMAT",
     "Store",
+    "is_leftover",
+    "remove",
     "schema",
     "write_atomically",
     "write_json",
@@ -37,6 +39,7 @@ RUN_FORMAT = 2
 CHAMPION_FILE = "champion.json"
 CONFIG_FILE = "config.toml"
 DATABASE_FILE = "run.db"
+_UNFINISHED = ".new"
 
 Exports: TypeAlias = Callable[[Design], Mapping[str, bytes | None]]
 
@@ -164,7 +167,8 @@ class Store:
         self.last_turn = turn.index
         if champion and turn.best_pair:
             self._unwritten = champion, turn.best_pair.design
-        self._synchronise()
+        # A turn that takes long is likely to be followed by such a one.
+        self._synchronise(at_once=work.seconds > _SYNC_INTERVAL / 4)
 
     def update_champion(self) -> None:
         """Write the files of the best pair that is saved, if they are those of an earlier one."""
@@ -177,7 +181,7 @@ class Store:
         for ending, data in self.exports(design).items():
             path = self.directory / f"champion.{ending}"
             if data is None:
-                path.unlink(missing_ok=True)
+                remove(path)
             else:
                 write_atomically(path, data)
         write_json(self.directory / CHAMPION_FILE, document)
@@ -236,8 +240,8 @@ class Store:
         except sqlite3.Error as error:
             raise RunError(f"{self.directory}: the database cannot be written: {error}") from error
 
-    def _synchronise(self) -> None:
-        if time.monotonic() - self._synced >= _SYNC_INTERVAL:
+    def _synchronise(self, *, at_once: bool) -> None:
+        if at_once or time.monotonic() - self._synced >= _SYNC_INTERVAL:
             with self._writing():
                 self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
             self.update_champion()
@@ -255,7 +259,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     Raises:
         RunError: It cannot be written.
     """
-    temporary = path.with_name(f".{path.name}.new")
+    temporary = path.with_name(f".{path.name}{_UNFINISHED}")
     try:
         with temporary.open("wb") as file:
             file.write(data)
@@ -263,12 +267,30 @@ def write_atomically(path: Path, data: bytes) -> None:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # the first error is the one to tell
+            temporary.unlink(missing_ok=True)
         raise RunError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 # What contains itself ends in a RecursionError.
 _json = json.JSONEncoder(separators=(",", ":"), allow_nan=False, check_circular=False).encode
+
+
+def is_leftover(path: Path) -> bool:
+    """Return whether this is what a kill has left of the writing of a file."""
+    return path.name.startswith(".") and path.name.endswith(_UNFINISHED)
+
+
+def remove(path: Path) -> None:
+    """Remove a file, if it is there.
+
+    Raises:
+        RunError: It cannot be removed.
+    """
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise RunError(f"{path}: cannot be removed: {error.strerror}") from error
 
 
 def _state(part: str, values: Any) -> str:

@@ -47,9 +47,16 @@ def test_a_run_and_its_champion(evoframe: Evoframe, tmp_path: Path) -> None:
     )
 
 
-def test_what_is_no_run_is_refused(evoframe: Evoframe) -> None:
-    refused = evoframe("doctor", "nowhere")
-    assert refused.returncode == 2
-    assert refused.stderr.splitlines()[-1] == (
-        "Error: nowhere: is no run's directory: there is no config.toml"
-    )
+def test_what_is_no_run_does_not_hide_the_others(evoframe: Evoframe) -> None:
+    assert evoframe("run", "quick", "--set", "run.generations=0", "--out", "here").returncode == 0
+    found = evoframe("doctor", "nowhere", "here", "--json")
+    assert found.returncode == 2
+    checks = json.loads(found.stdout)
+    assert checks["nowhere"] == [
+        {
+            "subject": "directory",
+            "state": "problem",
+            "finding": "nowhere: is no run's directory: there is no config.toml",
+        }
+    ]
+    assert {check["state"] for check in checks["here"]} == {"ok"}

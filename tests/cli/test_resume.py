@@ -132,6 +132,44 @@ def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
     assert evoframe("resume", *toy, "left").returncode == 0
 
 
+def test_a_second_signal_does_not_wait_for_what_hangs(toy: list[str], tmp_path: Path) -> None:
+    hanging = [
+        "--set",
+        "simulator={name='toy-hanging', beyond=-1.0}",
+        "--set",
+        "executor={name='threads', workers=2}",
+    ]
+    with started(tmp_path, "run", *toy, "-v", "toy.toml", *hanging, "--out", "left") as process:
+        told(process, "8 turns into left")
+        for word in ("Stopping after this turn", "Interrupted; no turn was finished in left"):
+            process.send_signal(signal.SIGINT)
+            told(process, word)
+        assert process.wait(60) == 130
+
+
+def test_what_cannot_be_written_is_said_whatever_lies_there(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    assert (
+        evoframe("run", *toy, "toy.toml", "--set", "simulator='toy-varied'", "--out", "here").returncode == 0
+    )
+    (tmp_path / "here" / ".verification.json.new").mkdir()
+    refused = evoframe("verify", *toy, "here")
+    assert refused.returncode == 1
+    assert (
+        refused.stderr.splitlines()[-1] == "Error: here/verification.json: cannot be written: Is a directory"
+    )
+
+
+def test_a_run_that_was_killed_while_it_wrote_its_configuration_is_begun(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / ".config.toml.new").write_text("[ru")
+    begun = evoframe("run", *toy, "toy.toml", "--out", "here")
+    assert begun.returncode == 0, begun.stderr
+
+
 def test_processes_cannot_import_a_plugin_of_a_file(evoframe: Evoframe, toy: list[str]) -> None:
     refused = evoframe("run", *toy, "toy.toml", "--set", "executor='processes'", "--out", "left")
     assert refused.returncode == 1

@@ -7,12 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 import toys
 from recorded import assert_same_result
 
-from evoframe import Outcome, Plugins, RunConfig, RunError, load_run, resume, run
+from evoframe import Member, Outcome, Plugins, RunConfig, RunError, load_run, resume, run
 from evoframe.errors import ComponentError
 
 Load = Callable[..., RunConfig]
@@ -33,6 +34,16 @@ def giving(value: Any) -> Callable[..., Any]:
 
 def outcomes(value: Any, steps: int = 1) -> Callable[..., Any]:
     return lambda self, designs, record: [outcome(value, steps)] * len(designs)
+
+
+def diverged_at(step: Any) -> Callable[..., Any]:
+    return lambda self, designs, record: [
+        attrs.evolve(outcome(np.ones((1, 3))), diverged_at=step) for _ in designs
+    ]
+
+
+def strangers(run: toys.DriftRun) -> list[Member]:
+    return [Member(id=i, fitness=None, age=1.5) for i in run.ids]  # type: ignore[arg-type]
 
 
 def shortened(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -56,6 +67,7 @@ FAULTS = [
     (toys.Product, "simulate", outcomes([1.0]), f"simulator: .*: returned no array for {VALUE}"),
     (toys.Product, "simulate", outcomes(np.ones((1, 3)), 2), f"returned 1 samples of {VALUE} for 2 steps"),
     (toys.Product, "simulate", ENDLESS, f"returned numbers that are not finite in {VALUE}, but had not div"),
+    (toys.Product, "simulate", diverged_at("late"), "simulator: .*: says that it diverged at step 'late'"),
     (toys.Product, "key", raises, f"simulator: .*: {OOPS}"),
     (toys.Product, "key", giving("text"), "simulator: .*: gave a key that is no bytes, but str"),
     (toys.Number, "decode", raises, rf"{A}'toy-number' .*{OOPS} \(turn 0, a 1\)"),
@@ -70,6 +82,13 @@ FAULTS = [
     (toys.DriftRun, "ask", shortened(toys.DriftRun.ask), rf"{B}.*: gave 5 genomes and 6 members"),
     (toys.DriftRun, "tell", raises, rf"{B}.*{OOPS}"),
     (toys.DriftRun, "express", raises, rf"{B}.*{OOPS} \(turn 0, a 1\)"),
+    (toys.DriftRun, "members", strangers, rf"{B}.*: gave a member with 1\.5 where an integer belongs"),
+    (
+        toys.DriftRun,
+        "dump",
+        giving(np.float32(1)),
+        rf"{B}.*TypeError: Object of type float32 is not JSON",
+    ),
     (toys.DriftRun, "dump", raises, rf"{B}.*{OOPS} \(turn 0, a \d+\)"),
     (toys.DriftRun, "state", raises, rf"{B}.*{OOPS}"),
     (toys.DriftRun, "state", giving({"x": float("inf")}), rf"{B}.*: its state cannot be saved as JSON"),
@@ -132,6 +151,28 @@ def test_a_run_goes_on_when_the_plugin_is_mended(
     assert load_run(tmp_path / "run").last_turn is not None
     resume(tmp_path / "run", plugins=toy_plugins)
     assert_same_result(undisturbed.directory, tmp_path / "run")
+
+
+def test_numbers_of_numpy_are_numbers(
+    toy_config: Load, toy_plugins: Plugins, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    undisturbed = run(toy_config("simulator={name='toy-product', limit=0.1}"), out=tmp_path / "undisturbed")
+    assert any(pair["diverged_at"] == 1 for pair in undisturbed.pairs)
+    working = toys.Product._outcome, toys.DriftRun.members
+
+    def numpys_outcome(self: toys.Product, design: Any) -> Outcome:
+        made = working[0](self, design)
+        step: Any = None if made.diverged_at is None else np.int64(made.diverged_at)
+        return attrs.evolve(made, diverged_at=step)
+
+    def numpys_members(self: toys.DriftRun) -> list[Member]:
+        integer: Any = np.int64
+        return [attrs.evolve(m, id=integer(m.id), age=integer(m.age)) for m in working[1](self)]
+
+    monkeypatch.setattr(toys.Product, "_outcome", numpys_outcome)
+    monkeypatch.setattr(toys.DriftRun, "members", numpys_members)
+    again = run(toy_config("simulator={name='toy-product', limit=0.1}"), out=tmp_path / "again")
+    assert_same_result(undisturbed.directory, again.directory)
 
 
 def test_an_executor_that_loses_results_is_named(

@@ -22,7 +22,7 @@ from evoframe.locking import locked
 from evoframe.observers import Observers
 from evoframe.plugins import Source
 from evoframe.provenance import differences
-from evoframe.resuming import reopen
+from evoframe.resuming import configuration_of, reopen
 from evoframe.run import prepare
 from evoframe.store import Store
 
@@ -164,6 +164,22 @@ class TestRefusal:
         (left / "config.toml").write_text(text.replace("extends = false", 'extends = "../secret.toml"'))
         with pytest.raises(InputError, match=r"config\.toml: extends: a run's configuration is complete"):
             resume(left, plugins=toy_plugins)
+
+    def test_of_settings_that_decide_the_result(self, left: Path, toy_plugins: Plugins) -> None:
+        for begun in (True, False):
+            if not begun:
+                (left / "run.db").unlink()
+            with pytest.raises(ConfigurationError, match=r"not that of the run:\n  run\.seed: 3 then, 9 now"):
+                reopen(left, ["run.seed=9"], toy_plugins)
+        assert resume(left, plugins=toy_plugins).finished
+
+    def test_of_other_settings_for_the_verification_of_a_finished_run(
+        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+    ) -> None:
+        directory = run(toy_config("simulator=toy-varied"), out=tmp_path / "run").directory
+        (directory / "verification.json").unlink()
+        with pytest.raises(ConfigurationError, match=r"not that of the run:\n  simulator\.gain: 1\.0 then"):
+            configuration_of(directory, ["simulator.gain=2.0"], toy_plugins)
 
     def test_of_a_second_process(self, left: Path, toy_plugins: Plugins) -> None:
         lock = locked(left)

@@ -103,6 +103,21 @@ class TestExportedChampion:
         assert (finished.directory / "champion.toy").exists()
         assert "there is no txt file of the champion: this design has no words" in caplog.text
 
+    def test_that_fails_is_no_end_of_the_run(
+        self,
+        toy_config: Load,
+        tmp_path: Path,
+        monkeypatch: pytest.MonkeyPatch,
+        caplog: pytest.LogCaptureFixture,
+    ) -> None:
+        def failing(*_: object) -> Export:
+            raise ZeroDivisionError("oops")
+
+        monkeypatch.setattr(toys.Varied, "export", failing)
+        finished = run(toy_config("simulator=toy-varied"), out=tmp_path / "run")
+        assert finished.finished
+        assert "there is no toy file of the champion: ZeroDivisionError: oops" in caplog.text
+
     def test_says_in_the_log_what_it_leaves_out(
         self, toy_config: Load, tmp_path: Path, caplog: pytest.LogCaptureFixture
     ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import sys
@@ -42,6 +43,22 @@ def end_process(code: int) -> int:
         os.kill(os.getpid(), -code)
         signal.pause()
     return code
+
+
+def end_process_silently(item: int) -> int:
+    if item:
+        os._exit(0)
+    return item
+
+
+def keep_the_lock(path: Path) -> None:
+    """Hang without ever letting go of Python's lock, as a simulator in C may do."""
+    path.write_text(str(os.getpid()))
+    ctypes.PyDLL(None).sleep(3600)
+
+
+def size(item: bytes) -> int:
+    return len(item)
 
 
 def end_process_once(marker: Path) -> str:

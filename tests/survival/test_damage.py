@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from recorded import rewritten
 
 from evoframe import InputError, Run, load_run, run
 from evoframe.checksums import CHAINED, SINGLE
@@ -124,6 +125,35 @@ def test_what_is_damaged_is_not_resumed(intact: Run, tmp_path: Path) -> None:
     database.close()
     with pytest.raises(InputError, match="is damaged: pairs"):
         reopen(tmp_path / "run")
+
+
+def test_a_table_without_an_end_is_not_read(intact: Run, tmp_path: Path) -> None:
+    shutil.copytree(intact.directory, tmp_path / "run")
+    endless = (
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT 'format' AS key, i AS value"
+    )
+    with sqlite3.connect(tmp_path / "run" / "run.db") as database:
+        database.execute("ALTER TABLE meta RENAME TO hidden")
+        database.execute(f"CREATE VIEW meta AS {endless} FROM n WHERE i < 0")
+    database.close()
+    for read in (everything, reopen):
+        with pytest.raises(InputError, match="has no format, but this evoframe reads format 2"):
+            read(tmp_path / "run")
+
+
+def test_names_of_populations_are_no_sql(intact: Run, tmp_path: Path) -> None:
+    shutil.copytree(intact.directory, tmp_path / "run")
+    path = tmp_path / "run" / "config.toml"
+    path.write_text(path.read_text().replace("[populations.morphology", "[populations.'m\" INTEGER, \"x'"))
+    with pytest.raises(InputError, match="its tables are not those of a run"):
+        everything(tmp_path / "run")
+
+
+def test_values_of_other_types_are_refused(intact: Run, tmp_path: Path) -> None:
+    shutil.copytree(intact.directory, tmp_path / "run")
+    rewritten(tmp_path / "run", "UPDATE pairs SET score = 'high' WHERE turn = 1")
+    with pytest.raises(InputError, match="is damaged: pairs has a row with values of other types"):
+        everything(tmp_path / "run")
 
 
 @pytest.mark.parametrize("schema", ["VIEW", "TRIGGER"])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import concurrent.futures
-import multiprocessing
+import contextlib
 import signal
-from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, InvalidStateError
 from concurrent.futures import TimeoutError as TookTooLong
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, Generic, TypeVar
 
 import attrs
@@ -23,6 +24,7 @@ __all__ = ["Processes"]
 T = TypeVar("T")
 R = TypeVar("R")
 
+_SILENT = 256  # stands for an exit code of 0, which pebble would take for the end of a worker's work
 _IN_HAND = 2  # items for each worker: one that it works on, and one that it finds when it is done
 _LOST = (TookTooLong, pebble.ProcessExpired, BrokenProcessPool)
 
@@ -62,12 +64,27 @@ class _Task(Generic[T]):
         return self.future.exception() is None and not self.future.result().succeeded
 
 
+class _Process(SpawnProcess):
+    """A process of which nobody expects that it ends by itself."""
+
+    @property
+    def exitcode(self) -> int | None:
+        return _SILENT if super().exitcode == 0 else super().exitcode
+
+
+class _Spawning(SpawnContext):
+    """Starts processes afresh: a copy of this process would have its locks."""
+
+    Process = _Process
+
+
 class _InProcesses:
     """The workers of ``processes``."""
 
     def __init__(self, workers: int, limit: float | None) -> None:
         self.workers = workers
         self._limit = limit
+        self._outstanding: set[Future[Answer]] = set()
         self._pool = self._new_pool()
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
@@ -82,6 +99,10 @@ class _InProcesses:
     def close(self) -> None:
         self._pool.stop()  # type: ignore[no-untyped-call]
         self._pool.join()
+        for future in list(self._outstanding):
+            with contextlib.suppress(InvalidStateError):  # done
+                future.set_exception(BrokenProcessPool())  # pebble forgets what it has not yet sent
+        self._outstanding.clear()
 
     def _hand_out(self, function: Callable[[T], R], items: Iterable[T], tasks: list[_Task[T]]) -> None:
         """Let the workers begin with an item while the next are made, until one has failed."""
@@ -132,19 +153,35 @@ class _InProcesses:
     def _schedule(self, parcel: bytes) -> Future[Answer]:
         if not self._pool.active:  # all of its processes were lost
             self._renew()
-        return self._pool.schedule(answered, [parcel], timeout=self._limit)
+        with _interrupts_held_back():  # processes inherit that; Ctrl-C is for the one that a person started
+            future = self._pool.schedule(answered, [parcel], timeout=self._limit)
+        self._outstanding.add(future)
+        future.add_done_callback(self._outstanding.discard)
+        return future
 
     def _renew(self) -> None:
         self.close()
         self._pool = self._new_pool()
 
     def _new_pool(self) -> pebble.ProcessPool:
-        spawning = multiprocessing.get_context("spawn")  # a copy of this process would have its locks
-        return pebble.ProcessPool(self.workers, initializer=end_with_parent, context=spawning)
+        return pebble.ProcessPool(self.workers, initializer=end_with_parent, context=_Spawning())
+
+
+@contextlib.contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Let no Ctrl-C come to this thread for a moment, where threads can have that."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 def _ending(code: int) -> str:
     """Return what a process ended with, in words."""
     if code >= 0:
-        return f"exit code {code}"
+        return f"exit code {0 if code == _SILENT else code}"
     return f"the signal {signal.Signals(-code).name}"

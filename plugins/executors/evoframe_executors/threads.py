@@ -57,13 +57,18 @@ class _InThreads:
     def __init__(self, workers: int, limit: float | None) -> None:
         self.workers = workers
         self._limit = limit
-        self._pool = _Pool(workers - 1 if limit is None else workers)
+        self._pool = self._new_pool()
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
+        if self._pool.abandoned:
+            self._pool = self._new_pool()
         tasks: list[_Task[T, R]] = []
         try:
             self._hand_out(_Watched(function), items, tasks)
             return [self._result(task) for task in tasks]
+        except (KeyboardInterrupt, SystemExit):
+            self._pool.abandoned = True  # whoever wants to leave now does not wait for the others
+            raise
         finally:
             for task in tasks:
                 task.future.cancel()  # what no thread has begun
@@ -87,6 +92,10 @@ class _InThreads:
         if self._limit is None:
             for task in tasks:
                 task.work(function)
+                task.pass_interrupt_on()
+
+    def _new_pool(self) -> _Pool:
+        return _Pool(self.workers - 1 if self._limit is None else self.workers)
 
     def _result(self, task: _Task[T, R]) -> R:
         """Return the result of a task whose predecessors are done, so that a thread begins it if none has."""
@@ -145,6 +154,11 @@ class _Task(Generic[T, R]):
             self.future.set_exception(error)
         else:
             self.future.set_result(result)
+
+    def pass_interrupt_on(self) -> None:
+        """Raise now what came of a Ctrl-C while this thread worked on the item."""
+        if self.future.done() and isinstance(error := self.future.exception(), KeyboardInterrupt):
+            raise error
 
     def _begin(self) -> bool:
         with self._lock:  # a future's own state raises an error, and logs it, at a second beginning

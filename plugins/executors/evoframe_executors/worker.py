@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import sys
 import threading
 import traceback
 from collections.abc import Callable
@@ -17,6 +18,9 @@ from typing import Any
 import attrs
 
 from evoframe import RunError
+
+if sys.platform == "linux":
+    import fcntl
 
 __all__ = ["Answer", "answered", "end_with_parent", "packed", "unpacked"]
 
@@ -75,6 +79,10 @@ def end_with_parent() -> None:
     parent = multiprocessing.parent_process()
     if parent is None:
         raise RuntimeError("this is no worker process")
+    if sys.platform == "linux":  # the kernel ends it even where a simulator keeps Python's lock
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+        flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
     threading.Thread(target=_end_after, args=[parent.sentinel], daemon=True).start()
 
 

@@ -12,6 +12,8 @@ from rich.text import Text
 
 from evoframe.cli.context import common_options, output, plugins_of
 from evoframe.doctor import Check, State, check_installation, check_run
+from evoframe.errors import InputError
+from evoframe.plugins import Plugins
 
 __all__ = ["doctor"]
 
@@ -35,10 +37,12 @@ def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> 
 
     Of an installation: the plugins, versions, the kernel of the solver, and a few simulations. Of a run: its
     database, whether its turns are complete, whether it can go on, and whether its champion scores again what
-    it scored then, to the last digit. Nothing is changed. The exit code is 1 if there is a problem.
+    it scored then, to the last digit. Nothing is changed. The exit code is 1 if there is a problem, and 2 if
+    something is no run's directory or is being written.
     """
     found = plugins_of(ctx)
-    checks = {str(directory): list(check_run(directory, found)) for directory in directories}
+    refused: list[InputError] = []
+    checks = {str(directory): _checks(directory, found, refused) for directory in directories}
     if not directories:
         checks["installation"] = list(check_installation(found))
     if as_json:
@@ -47,8 +51,19 @@ def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> 
     else:
         for name, listed in checks.items():
             _print(name, listed)
+    if refused:
+        ctx.exit(2)
     if any(check.state == "problem" for listed in checks.values() for check in listed):
         ctx.exit(1)
+
+
+def _checks(directory: Path, plugins: Plugins, refused: list[InputError]) -> list[Check]:
+    """Return what is found out about a run; what cannot be looked at does not hide the others."""
+    try:
+        return list(check_run(directory, plugins))
+    except InputError as error:
+        refused.append(error)
+        return [Check("directory", "problem", str(error))]
 
 
 def _print(name: str, checks: list[Check]) -> None:

@@ -55,7 +55,7 @@ class Cell:
 
     @property
     def pairs(self) -> int:
-        """How many pairs a run scores, those that it has scored before included; the meeting at the end apart."""
+        """How many pairs a run scores, repeats included, the meeting at the end apart."""
         sizes = [population.size for population in self.config.populations.values()]
         strategy = self.config.collaboration.component
         first = len({(a, b % sizes[1]) for a in range(sizes[0]) for b in range(max(sizes[1:]))})

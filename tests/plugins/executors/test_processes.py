@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -82,6 +84,41 @@ def test_one_that_crashes_twice_is_lost_with_its_item(two: ExecutorRun, code: in
     assert two.map(chores.square, [3]) == [9]
 
 
+def test_one_that_says_that_all_is_well_and_ends_is_lost_too(two: ExecutorRun) -> None:
+    with pytest.raises(WorkerError, match=r"^ended its process with exit code 0, twice$"):
+        two.map(chores.end_process_silently, [0, 1, 0])
+
+
+def test_when_all_are_killed_as_they_start_nothing_is_lost_or_waited_for() -> None:
+    items = [bytes(200_000)] * 20  # more than a pipe holds
+    killed = threading.Thread(target=kill_the_first_two)
+    killed.start()
+    run = Processes(workers=2).start()
+    try:
+        assert run.map(chores.size, items) == [200_000] * 20
+    finally:
+        run.close()
+        killed.join()
+
+
+def kill_the_first_two() -> None:
+    until, pids = time.monotonic() + 30, set[int]()
+    while len(pids) < 2 and time.monotonic() < until:
+        for child in multiprocessing.active_children():
+            if child.pid is not None and child.pid not in pids:
+                pids.add(child.pid)
+                os.kill(child.pid, signal.SIGKILL)
+        time.sleep(0.005)
+
+
+def test_they_do_not_hear_ctrl_c(two: ExecutorRun) -> None:
+    two.map(chores.square, range(4))
+    for child in multiprocessing.active_children():
+        assert child.pid is not None
+        os.kill(child.pid, signal.SIGINT)
+    assert two.map(chores.square, range(4)) == [0, 1, 4, 9]
+
+
 def test_an_error_brings_the_traceback_with_it(two: ExecutorRun) -> None:
     with pytest.raises(ZeroDivisionError) as caught:
         two.map(chores.fail, [0, 1])
@@ -154,7 +191,7 @@ from evoframe_executors import Processes
 
 def main():
     run = Processes(workers=1).start()
-    run.map(chores.write_process_and_hang, [Path(sys.argv[1])])
+    run.map(chores.CHORE, [Path(sys.argv[1])])
 """
 
 
@@ -170,8 +207,11 @@ def start(program: str, directory: Path) -> subprocess.Popen[str]:
     )
 
 
-def test_they_end_with_the_process_that_started_them(tmp_path: Path) -> None:
-    with start(PROGRAM + "\nif __name__ == '__main__':\n    main()\n", tmp_path) as program:
+@pytest.mark.parametrize("chore", ["write_process_and_hang", "keep_the_lock"])
+def test_they_end_with_the_process_that_started_them(tmp_path: Path, chore: str) -> None:
+    with start(
+        PROGRAM.replace("CHORE", chore) + "\nif __name__ == '__main__':\n    main()\n", tmp_path
+    ) as program:
         worker = int(written(tmp_path / "process"))
         assert is_alive(worker)
         program.kill()
@@ -182,7 +222,7 @@ def test_they_end_with_the_process_that_started_them(tmp_path: Path) -> None:
 
 
 def test_a_program_that_starts_them_when_it_is_imported_is_told_so(tmp_path: Path) -> None:
-    with start(PROGRAM + "\nmain()\n", tmp_path) as program:
+    with start(PROGRAM.replace("CHORE", "write_process_and_hang") + "\nmain()\n", tmp_path) as program:
         said = program.communicate(timeout=120)[1]
     assert program.returncode == 1
     assert said.splitlines()[-1].startswith(
