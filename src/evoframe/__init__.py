@@ -8,6 +8,7 @@ the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :f
 from evoframe._version import __version__
 from evoframe.coevolution import Coevolution
 from evoframe.config import Chosen, PopulationConfig, RunConfig, RunSettings
+from evoframe.cores import available_cores
 from evoframe.discovery import discover
 from evoframe.errors import (
     ConfigurationError,
@@ -108,6 +109,7 @@ __all__ = [
     "Workload",
     "__version__",
     "assemble",
+    "available_cores",
     "discover",
     "hookimpl",
     "load_config",

@@ -15,8 +15,8 @@ from typing import Any, Generic, TypeVar
 import attrs
 import pebble
 
-from evoframe import ExecutorRun, RunError, WorkerError
-from evoframe_executors.options import available_cores, overdue, time_limit, worker_count
+from evoframe import ExecutorRun, RunError, WorkerError, available_cores
+from evoframe_executors.options import overdue, time_limit, worker_count
 from evoframe_executors.worker import Answer, answered, end_with_parent, packed, unpacked
 
 __all__ = ["Processes"]

@@ -13,8 +13,8 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 import attrs
 
-from evoframe import ExecutorRun, WorkerError
-from evoframe_executors.options import available_cores, overdue, time_limit, worker_count
+from evoframe import ExecutorRun, WorkerError, available_cores
+from evoframe_executors.options import overdue, time_limit, worker_count
 from evoframe_executors.serial import InThisThread
 
 __all__ = ["Threads"]

@@ -21,6 +21,7 @@ __all__ = [
     "common_options",
     "configuration_argument",
     "is_quiet",
+    "modules_of",
     "output",
     "plugins_of",
     "preset_option",
@@ -124,6 +125,11 @@ def scored(score: float | None, unit: str) -> str:
 def is_quiet(ctx: click.Context) -> bool:
     """Return whether only what was asked for shall be said."""
     return _common(ctx).verbosity < 0
+
+
+def modules_of(ctx: click.Context) -> tuple[str, ...]:
+    """Return the local plugins that were named, for other processes to discover."""
+    return tuple(_common(ctx).modules)
 
 
 def plugins_of(ctx: click.Context) -> Plugins:

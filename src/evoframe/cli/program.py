@@ -20,6 +20,7 @@ from evoframe.cli.resume import resume
 from evoframe.cli.run import run
 from evoframe.cli.signals import exit_code
 from evoframe.cli.simulate import simulate
+from evoframe.cli.study import study
 from evoframe.cli.verify import verify
 from evoframe.errors import EvoframeError, PluginWarning, RunError
 from evoframe.observers import Observers
@@ -77,6 +78,7 @@ Examples:
   evoframe run quick                          a few seconds of it
   evoframe run --set aggregator=hm --seed 7
   evoframe resume runs/paper-1                go on with it after an interruption
+  evoframe study paper --dry-run              the published study: 600 runs
   evoframe simulate runs/paper-1/champion.json
   evoframe verify runs/paper-1                is its champion real?
   evoframe export runs/paper-1 --to vxa
@@ -100,7 +102,7 @@ def cli() -> None:
     """
 
 
-for command in (completion, config, doctor, export, plugins, resume, run, simulate, verify):
+for command in (completion, config, doctor, export, plugins, resume, run, simulate, study, verify):
     cli.add_command(command)
 
 

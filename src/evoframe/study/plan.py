@@ -70,9 +70,9 @@ class Cell:
         return int.from_bytes(hashlib.sha256(name.encode()).digest()[:6], "little")
 
 
-@attrs.frozen(eq=False)
+@attrs.frozen
 class Planned:
-    """One run of a study.
+    """One run of a study, known by its directory.
 
     Attributes:
         cell: Its configuration.
@@ -80,8 +80,8 @@ class Planned:
         directory: Where it lies.
     """
 
-    cell: Cell
-    index: int
+    cell: Cell = attrs.field(eq=False)
+    index: int = attrs.field(eq=False)
     directory: Path
 
     @property

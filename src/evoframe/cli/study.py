@@ -1,0 +1,200 @@
+"""``evoframe study``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import attrs
+import click
+import numpy as np
+from click.shell_completion import CompletionItem
+from rich.table import Table
+
+from evoframe.cli.context import common_options, is_quiet, modules_of, output, plugins_of, set_option
+from evoframe.cli.signals import stop_on_signals
+from evoframe.cli.study_progress import StudyProgress, duration
+from evoframe.cores import available_cores
+from evoframe.study.conduct import claim, conduct, survey
+from evoframe.study.estimate import estimated
+from evoframe.study.gathered import gather, import_rows, imported_rows
+from evoframe.study.plan import Planned, Study, read_study, study_names
+from evoframe.study.progress import Status
+from evoframe.study.rows import Row
+from evoframe.study.worker import Order
+
+__all__ = ["study"]
+
+_EPILOG = """\b
+Examples:
+  evoframe study small                        a minute, to see what a study is
+  evoframe study paper --dry-run              600 runs: how long, how much room?
+  evoframe study paper --out studies/paper    run it; again, to go on with it
+  evoframe study paper --set 'grid={"collaboration.n"=[2], aggregator=["am", "wm"]}'
+  evoframe study paper --import docs/results/paper/rows.csv
+"""
+
+
+def _complete(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    names = [CompletionItem(name) for name in study_names() if name.startswith(incomplete)]
+    return [*names, CompletionItem(incomplete, type="file")]
+
+
+@click.command(epilog=_EPILOG)
+@click.argument("source", metavar="STUDY", shell_complete=_complete)
+@set_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="The study's directory; by default studies/<study>.",
+)
+@click.option(
+    "--workers",
+    type=click.IntRange(min=0),
+    default=0,
+    metavar="N",
+    help="So many runs at once; 0: one a core.",
+)
+@click.option("--dry-run", is_flag=True, help="Only say what would be run, and what time and room it takes.")
+@click.option("--retry", is_flag=True, help="Run what has failed once more.")
+@click.option(
+    "--import",
+    "tables",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="ROWS.csv",
+    help="Take finished runs from the table of another sitting. Repeatable.",
+)
+@common_options
+@click.pass_context
+def study(
+    ctx: click.Context,
+    source: str,
+    overrides: tuple[str, ...],
+    out: Path | None,
+    workers: int,
+    dry_run: bool,
+    retry: bool,
+    tables: tuple[Path, ...],
+) -> None:
+    """Run a grid of configurations, each several times; go on where that was left.
+
+    STUDY is a TOML file with a base (extends), the number of runs and a grid, or the name of a study that
+    comes with evoframe: paper, collaborators, small. Only what is missing is run, in an order that leaves a
+    partial study balanced. Seeds are derived: those of one configuration depend on no other. At the end,
+    rows.csv has a row for each run, and curves.csv how it got there.
+    """
+    found = read_study(source, overrides, plugins_of(ctx))
+    directory = out or Path("studies") / found.label
+    if not dry_run or directory.exists():
+        claim(found, directory)
+        import_rows(found, directory, tables)
+    sitting = _Sitting(ctx, found, directory, survey(found, directory, _imported(found, directory)), retry)
+    if dry_run:
+        sitting.tell()
+        return
+    sitting.work(workers or available_cores())
+
+
+def _imported(found: Study, directory: Path) -> list[Path]:
+    return [planned.directory for planned in imported_rows(found, directory)]
+
+
+@attrs.frozen
+class _Sitting:
+    """One call of the command."""
+
+    ctx: click.Context
+    study: Study
+    directory: Path
+    statuses: Mapping[Planned, Status]
+    retry: bool
+
+    @property
+    def finished(self) -> list[Planned]:
+        return [planned for planned, status in self.statuses.items() if status.state == "finished"]
+
+    @property
+    def todo(self) -> list[Planned]:
+        wanted = ("missing", "begun", "failed") if self.retry else ("missing", "begun")
+        return [planned for planned, status in self.statuses.items() if status.state in wanted]
+
+    def tell(self) -> None:
+        """Say what would be run."""
+        estimate = estimated(self.todo, self.finished)
+        cores = available_cores()
+        table = Table(box=None, show_header=False)
+        table.add_column(style="bold", no_wrap=True)
+        table.add_column(overflow="fold")
+        table.add_row("configurations", f"{len(self.study.cells)}, {self.study.runs} runs each")
+        table.add_row("runs", f"{len(self.finished)} finished, {len(self.todo)} to run")
+        table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.todo):,} to score")
+        table.add_row(
+            "time", f"{duration(estimate.seconds / cores)} on {cores} cores, from {estimate.measured}"
+        )
+        table.add_row("room", f"{estimate.megabytes:,.0f} MB in {self.directory}")
+        output().print(table)
+        self._tell_failed(self.statuses)
+
+    def work(self, workers: int) -> None:
+        """Run what is missing, and show what came of it."""
+        before = {planned: row.score for planned, row in self._rows(self.finished).items()}
+        study, modules = self.study, modules_of(self.ctx)
+        orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in self.todo}
+        with stop_on_signals("the turns in progress") as stop:
+            interrupted = False
+            try:
+                with StudyProgress(self.todo, before, quiet=is_quiet(self.ctx)) as progress:
+                    conduct(orders, workers, progress, stop.is_asked)
+            except KeyboardInterrupt:
+                interrupted = True
+        self._end(stop.exit_code if interrupted or stop.is_asked() else 0)
+
+    def _rows(self, finished: list[Planned]) -> dict[Planned, Row]:
+        return dict(zip(finished, gather(self.study, self.directory, finished), strict=True))
+
+    def _end(self, code: int) -> None:
+        """Show what there is, and leave with an exit code that says whether that is all."""
+        after = attrs.evolve(
+            self, statuses=survey(self.study, self.directory, _imported(self.study, self.directory))
+        )
+        rows = self._rows(after.finished)
+        if is_quiet(self.ctx):
+            click.echo(self.directory)
+        else:
+            output().print(_results(self.study, rows))
+        self._tell_failed(after.statuses)
+        if code:
+            left = len(after.statuses) - len(rows)
+            click.echo(
+                f"Interrupted; {left} runs are left in {self.directory}; the same command goes on", err=True
+            )
+        self.ctx.exit(code or int(len(rows) < len(after.statuses)))
+
+    def _tell_failed(self, statuses: Mapping[Planned, Status]) -> None:
+        failed = {planned: status for planned, status in statuses.items() if status.state == "failed"}
+        for planned, status in failed.items():
+            click.echo(f"failed: {planned.label}: {status.cause}", err=True)
+        if failed:
+            click.echo(f"{len(failed)} runs have failed; --retry runs them once more", err=True)
+
+
+def _results(study: Study, rows: Mapping[Planned, Row]) -> Table:
+    table = Table(box=None, header_style="bold")
+    for heading in ("configuration", "runs", "best pair: median", "quartiles", "best", "fitness: median"):
+        table.add_column(heading, justify="left" if heading == "configuration" else "right", no_wrap=True)
+    for cell in study.cells:
+        found = [row for planned, row in rows.items() if planned.cell is cell]
+        scores, fitness = sorted(row.score for row in found), [row.fitness for row in found]
+        table.add_row(cell.label, f"{len(found)}/{study.runs}", *_figures(scores, fitness))
+    return table
+
+
+def _figures(scores: list[float], fitness: list[float]) -> list[str]:
+    if not scores:
+        return ["", "", "", ""]
+    low, middle, high = np.quantile(scores, [0.25, 0.5, 0.75])
+    return [
+        f"{middle:.5g}", f"{low:.5g} to {high:.5g}", f"{scores[-1]:.5g}", f"{np.median(fitness):.5g}"
+    ]  # fmt: skip

@@ -1,0 +1,162 @@
+"""What a study shows while it goes on: a bar and a table on a terminal, a line for each run elsewhere."""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from typing import Self
+
+import attrs
+from rich.console import Console, Group
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from evoframe.loading import load_run
+from evoframe.study.plan import Cell, Planned
+from evoframe.study.pool import End
+
+__all__ = ["StudyProgress", "duration"]
+
+_INTERVAL = 0.5  # s, between two pictures
+
+
+@attrs.define
+class _State:
+    """How far a cell is."""
+
+    total: int
+    done: int = 0
+    failed: int = 0
+    running: int = 0
+    scores: list[float] = attrs.field(factory=list)
+    best: float | None = None
+
+    def saw(self, score: float | None) -> None:
+        if score is not None:
+            self.best = score if self.best is None else max(score, self.best)
+
+
+class StudyProgress:
+    """Watches a study.
+
+    Args:
+        todo: The runs that will be made.
+        finished: The runs that are finished already, with their scores.
+        quiet: Whether to say only what failed.
+    """
+
+    def __init__(self, todo: Sequence[Planned], finished: Mapping[Planned, float], *, quiet: bool) -> None:
+        self._console = Console(
+            stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
+        )
+        self._quiet = quiet
+        self._todo, self._shares = list(todo), dict[Planned, float]()
+        self._cells: dict[Cell, _State] = {}
+        for planned in (*finished, *todo):
+            self._cells.setdefault(planned.cell, _State(0)).total += 1
+        for planned, score in finished.items():
+            state = self._cells[planned.cell]
+            state.done += 1
+            state.scores.append(score)
+            state.saw(score)
+        self._started = time.monotonic()
+        shown = self._console.is_terminal and not quiet
+        self._live = Live(console=self._console, transient=True, auto_refresh=False) if shown else None
+        self._drawn = 0.0
+
+    def __enter__(self) -> Self:
+        if self._live is not None:
+            self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def began(self, planned: Planned) -> None:
+        """Work on a run begins."""
+        self._cells[planned.cell].running += 1
+        self._shares[planned] = 0.0
+
+    def told(self, planned: Planned, turn: int, best: float | None) -> None:
+        """A run has finished a turn."""
+        config = planned.cell.config
+        length = config.run.generations * len(config.populations)
+        self._shares[planned] = min(1.0, (turn + 1) / (length + 1))
+        self._cells[planned.cell].saw(best)
+
+    def ended(self, planned: Planned, end: End) -> None:
+        """Work on a run has ended."""
+        state, score = self._cells[planned.cell], None
+        state.running -= 1
+        if end.state == "finished":
+            state.done += 1
+            self._shares[planned] = 1.0
+            score = load_run(planned.directory).summary["best_pair_score"]
+            state.saw(score)
+            state.scores.append(score)
+        elif end.state == "failed":
+            state.failed += 1
+            self._shares[planned] = 1.0
+        if end.state == "failed" or not (self._quiet or self._live is not None):
+            self._console.print(self._line(planned, end, score), soft_wrap=True)
+
+    def looked(self) -> None:
+        """Draw the picture anew, if there is one."""
+        now = time.monotonic()
+        if self._live is not None and now - self._drawn >= _INTERVAL:
+            self._drawn = now
+            self._live.update(self._picture(), refresh=True)
+
+    def _line(self, planned: Planned, end: End, score: float | None) -> str:
+        what = f"failed: {end.cause}" if end.state == "failed" else end.state
+        best = "" if score is None else f", best pair {score:.5g}"
+        return f"{planned.label}: {what}{best}  {self._tally()}"
+
+    def _tally(self) -> str:
+        states = self._cells.values()
+        done, total = sum(state.done for state in states), sum(state.total for state in states)
+        running, failed = sum(state.running for state in states), sum(state.failed for state in states)
+        left = total - done - failed - running
+        parts = [f"{done}/{total} runs done", f"{running} running", f"{left} left"]
+        if failed:
+            parts.append(f"{failed} failed")
+        return ", ".join([*parts, *self._times()])
+
+    def _times(self) -> list[str]:
+        """Return rate and time left, weighted with the pairs of the runs."""
+        worked = sum(planned.cell.pairs * share for planned, share in self._shares.items())
+        whole = sum(planned.cell.pairs for planned in self._todo)
+        elapsed = time.monotonic() - self._started
+        if not worked or not elapsed:
+            return []
+        return [f"{worked / elapsed:,.0f} pairs/s", f"{duration(elapsed * (whole - worked) / worked)} left"]
+
+    def _picture(self) -> Group:
+        whole = sum(planned.cell.pairs for planned in self._todo) or 1
+        worked = sum(planned.cell.pairs * share for planned, share in self._shares.items())
+        table = Table(box=None, header_style="bold")
+        for heading in ("configuration", "done", "running", "best pair", "median"):
+            table.add_column(heading, justify="left" if heading == "configuration" else "right", no_wrap=True)
+        for cell, state in self._cells.items():
+            median = statistics.median(state.scores) if state.scores else None
+            table.add_row(
+                cell.label,
+                f"{state.done}/{state.total}",
+                str(state.running or ""),
+                "" if state.best is None else f"{state.best:.5g}",
+                "" if median is None else f"{median:.5g}",
+            )
+        return Group(table, ProgressBar(total=whole, completed=worked), Text(self._tally()))
+
+
+def duration(seconds: float) -> str:
+    """Return a duration for a person: ``40 s``, ``12 min``, ``3 h 20 min``."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
