@@ -25,6 +25,7 @@ from evoframe.layers import Layer
 from evoframe.loading import Champion, Run, load_run
 from evoframe.plugins import Plugins, suggestion
 from evoframe.population import Population
+from evoframe.processes import WorkerProcesses
 from evoframe.protocols import (
     Aggregator,
     CollaborationStrategy,
@@ -106,6 +107,7 @@ __all__ = [
     "Variant",
     "Verification",
     "WorkerError",
+    "WorkerProcesses",
     "Workload",
     "__version__",
     "assemble",

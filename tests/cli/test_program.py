@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import pty
 import re
 import signal
 import subprocess
@@ -14,25 +12,9 @@ from pathlib import Path
 
 import pytest
 import toys
-from processes import Evoframe, started, surroundings, told
+from processes import Evoframe, on_a_terminal, started, told
 
 import evoframe as package
-
-
-def on_a_terminal(arguments: list[str], directory: Path) -> str:
-    """Return all that a person at a terminal of 80 columns is sent."""
-    pid, terminal = pty.fork()
-    if pid == 0:
-        os.chdir(directory)
-        terminal_of = {**surroundings(), "TERM": "xterm-256color", "COLUMNS": "80", "LINES": "24"}
-        command = [sys.executable, "-m", "evoframe", *arguments]
-        os.execve(sys.executable, command, terminal_of)  # noqa: S606 - the program under test
-    shown = b""
-    with contextlib.suppress(OSError):  # what a terminal reads once its program has ended
-        while part := os.read(terminal, 65536):
-            shown += part
-    assert os.waitpid(pid, 0)[1] == 0, shown
-    return shown.decode()
 
 
 def slow_run(directory: Path, *settings: str) -> contextlib.AbstractContextManager[subprocess.Popen[str]]:

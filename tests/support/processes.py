@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import pty
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -61,3 +62,19 @@ def told(process: subprocess.Popen[str], words: str) -> str:
         if words in line:
             return line
     raise AssertionError(f"the program ended without {words!r}: {said}")
+
+
+def on_a_terminal(arguments: list[str], directory: Path, *, lines: int = 24) -> str:
+    """Return all that a person at a terminal of 80 columns is sent."""
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.chdir(directory)
+        terminal_of = {**surroundings(), "TERM": "xterm-256color", "COLUMNS": "80", "LINES": str(lines)}
+        command = [sys.executable, "-m", "evoframe", *arguments]
+        os.execve(sys.executable, command, terminal_of)  # noqa: S606 - the program under test
+    shown = b""
+    with contextlib.suppress(OSError):  # what a terminal reads once its program has ended
+        while part := os.read(terminal, 65536):
+            shown += part
+    assert os.waitpid(pid, 0)[1] == 0, shown
+    return shown.decode()

@@ -236,6 +236,18 @@ class Hanging(Product):
 
 
 @attrs.frozen
+class Unsound(Product):
+    """Fails where a file is missing."""
+
+    sound: str = ""
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        if not Path(self.sound).exists():
+            raise ZeroDivisionError("not sound")
+        return super().simulate(designs, record)
+
+
+@attrs.frozen
 class Varied(Product):
     """Has all that a simulator may offer: files to read and to write, and variants.
 
@@ -380,6 +392,7 @@ def evoframe_simulators() -> Mapping[str, type[Any]]:
     return {
         "toy-product": Product,
         "toy-slow": Slow,
+        "toy-unsound": Unsound,
         "toy-hanging": Hanging,
         "toy-varied": Varied,
         "toy-fitting": Fitting,

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import concurrent.futures
-import contextlib
-import signal
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, InvalidStateError
+from collections.abc import Callable, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future
 from concurrent.futures import TimeoutError as TookTooLong
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, Generic, TypeVar
 
 import attrs
 import pebble
 
-from evoframe import ExecutorRun, RunError, WorkerError, available_cores
+from evoframe import ExecutorRun, RunError, WorkerError, WorkerProcesses, available_cores
 from evoframe_executors.options import overdue, time_limit, worker_count
-from evoframe_executors.worker import Answer, answered, end_with_parent, packed, unpacked
+from evoframe_executors.worker import Answer, answered, packed, unpacked
 
 __all__ = ["Processes"]
 
 T = TypeVar("T")
 R = TypeVar("R")
 
-_SILENT = 256  # stands for an exit code of 0, which pebble would take for the end of a worker's work
 _IN_HAND = 2  # items for each worker: one that it works on, and one that it finds when it is done
 _LOST = (TookTooLong, pebble.ProcessExpired, BrokenProcessPool)
 
@@ -64,28 +60,13 @@ class _Task(Generic[T]):
         return self.future.exception() is None and not self.future.result().succeeded
 
 
-class _Process(SpawnProcess):
-    """A process of which nobody expects that it ends by itself."""
-
-    @property
-    def exitcode(self) -> int | None:
-        return _SILENT if super().exitcode == 0 else super().exitcode
-
-
-class _Spawning(SpawnContext):
-    """Starts processes afresh: a copy of this process would have its locks."""
-
-    Process = _Process
-
-
 class _InProcesses:
     """The workers of ``processes``."""
 
     def __init__(self, workers: int, limit: float | None) -> None:
         self.workers = workers
         self._limit = limit
-        self._outstanding: set[Future[Answer]] = set()
-        self._pool = self._new_pool()
+        self._pool = WorkerProcesses(workers)
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
         tasks: list[_Task[T]] = []
@@ -97,12 +78,7 @@ class _InProcesses:
             raise
 
     def close(self) -> None:
-        self._pool.stop()  # type: ignore[no-untyped-call]
-        self._pool.join()
-        for future in list(self._outstanding):
-            with contextlib.suppress(InvalidStateError):  # done
-                future.set_exception(BrokenProcessPool())  # pebble forgets what it has not yet sent
-        self._outstanding.clear()
+        self._pool.close()
 
     def _hand_out(self, function: Callable[[T], R], items: Iterable[T], tasks: list[_Task[T]]) -> None:
         """Let the workers begin with an item while the next are made, until one has failed."""
@@ -142,7 +118,7 @@ class _InProcesses:
             raise WorkerError(f"{overdue(self._limit)}, twice", task.item) from error
         except pebble.ProcessExpired as error:
             raise WorkerError(
-                f"ended its process with {_ending(error.exitcode)}, twice", task.item
+                f"ended its process with {WorkerProcesses.ending(error)}, twice", task.item
             ) from error
         except BrokenProcessPool as error:
             raise RunError(
@@ -153,35 +129,8 @@ class _InProcesses:
     def _schedule(self, parcel: bytes) -> Future[Answer]:
         if not self._pool.active:  # all of its processes were lost
             self._renew()
-        with _interrupts_held_back():  # processes inherit that; Ctrl-C is for the one that a person started
-            future = self._pool.schedule(answered, [parcel], timeout=self._limit)
-        self._outstanding.add(future)
-        future.add_done_callback(self._outstanding.discard)
-        return future
+        return self._pool.schedule(answered, [parcel], self._limit)
 
     def _renew(self) -> None:
         self.close()
-        self._pool = self._new_pool()
-
-    def _new_pool(self) -> pebble.ProcessPool:
-        return pebble.ProcessPool(self.workers, initializer=end_with_parent, context=_Spawning())
-
-
-@contextlib.contextmanager
-def _interrupts_held_back() -> Iterator[None]:
-    """Let no Ctrl-C come to this thread for a moment, where threads can have that."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
-
-
-def _ending(code: int) -> str:
-    """Return what a process ended with, in words."""
-    if code >= 0:
-        return f"exit code {0 if code == _SILENT else code}"
-    return f"the signal {signal.Signals(-code).name}"
+        self._pool = WorkerProcesses(self.workers)

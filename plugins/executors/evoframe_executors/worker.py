@@ -5,13 +5,8 @@ The parcels are made as :mod:`multiprocessing` makes its own. Nothing but these 
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import sys
-import threading
 import traceback
 from collections.abc import Callable
-from multiprocessing.connection import wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
@@ -19,10 +14,7 @@ import attrs
 
 from evoframe import RunError
 
-if sys.platform == "linux":
-    import fcntl
-
-__all__ = ["Answer", "answered", "end_with_parent", "packed", "unpacked"]
+__all__ = ["Answer", "answered", "packed", "unpacked"]
 
 
 @attrs.frozen
@@ -72,23 +64,6 @@ def unpacked(answer: Answer) -> Any:
     if answer.succeeded:
         return content
     raise content
-
-
-def end_with_parent() -> None:
-    """Let this worker process end when the one that started it is gone, whatever it is doing."""
-    parent = multiprocessing.parent_process()
-    if parent is None:
-        raise RuntimeError("this is no worker process")
-    if sys.platform == "linux":  # the kernel ends it even where a simulator keeps Python's lock
-        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
-        flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
-        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
-    threading.Thread(target=_end_after, args=[parent.sentinel], daemon=True).start()
-
-
-def _end_after(sentinel: int) -> None:
-    wait([sentinel])
-    os._exit(1)
 
 
 def _packed(content: Any) -> bytes:

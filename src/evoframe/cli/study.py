@@ -13,7 +13,7 @@ from rich.table import Table
 
 from evoframe.cli.context import common_options, is_quiet, modules_of, output, plugins_of, set_option
 from evoframe.cli.signals import stop_on_signals
-from evoframe.cli.study_progress import StudyProgress, duration
+from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
 from evoframe.cores import available_cores
 from evoframe.study.conduct import claim, conduct, survey
 from evoframe.study.estimate import estimated
@@ -145,7 +145,7 @@ class _Sitting:
         with stop_on_signals("the turns in progress") as stop:
             interrupted = False
             try:
-                with StudyProgress(self.todo, before, quiet=is_quiet(self.ctx)) as progress:
+                with StudyProgress(study.headings, self.todo, before, quiet=is_quiet(self.ctx)) as progress:
                     conduct(orders, workers, progress, stop.is_asked)
             except KeyboardInterrupt:
                 interrupted = True
@@ -181,13 +181,12 @@ class _Sitting:
 
 
 def _results(study: Study, rows: Mapping[Planned, Row]) -> Table:
-    table = Table(box=None, header_style="bold")
-    for heading in ("configuration", "runs", "best pair: median", "quartiles", "best", "fitness: median"):
-        table.add_column(heading, justify="left" if heading == "configuration" else "right", no_wrap=True)
+    """Return the medians of the best pairs and of the last fitness, and how the first are spread."""
+    table = table_of_cells(study.headings, ("runs", "best pair", "quartiles", "best", "fitness"))
     for cell in study.cells:
         found = [row for planned, row in rows.items() if planned.cell is cell]
         scores, fitness = sorted(row.score for row in found), [row.fitness for row in found]
-        table.add_row(cell.label, f"{len(found)}/{study.runs}", *_figures(scores, fitness))
+        table.add_row(*cell.values, f"{len(found)}/{study.runs}", *_figures(scores, fitness))
     return table
 
 

@@ -19,7 +19,7 @@ from evoframe.loading import load_run
 from evoframe.study.plan import Cell, Planned
 from evoframe.study.pool import End
 
-__all__ = ["StudyProgress", "duration"]
+__all__ = ["StudyProgress", "duration", "table_of_cells"]
 
 _INTERVAL = 0.5  # s, between two pictures
 
@@ -44,16 +44,24 @@ class StudyProgress:
     """Watches a study.
 
     Args:
+        headings: What the table calls the keys of the grid.
         todo: The runs that will be made.
         finished: The runs that are finished already, with their scores.
         quiet: Whether to say only what failed.
     """
 
-    def __init__(self, todo: Sequence[Planned], finished: Mapping[Planned, float], *, quiet: bool) -> None:
+    def __init__(
+        self,
+        headings: Sequence[str],
+        todo: Sequence[Planned],
+        finished: Mapping[Planned, float],
+        *,
+        quiet: bool,
+    ) -> None:
         self._console = Console(
             stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
         )
-        self._quiet = quiet
+        self._headings, self._quiet = headings, quiet
         self._todo, self._shares = list(todo), dict[Planned, float]()
         self._cells: dict[Cell, _State] = {}
         for planned in (*finished, *todo):
@@ -139,19 +147,27 @@ class StudyProgress:
     def _picture(self) -> Group:
         whole = sum(planned.cell.pairs for planned in self._todo) or 1
         worked = sum(planned.cell.pairs * share for planned, share in self._shares.items())
-        table = Table(box=None, header_style="bold")
-        for heading in ("configuration", "done", "running", "best pair", "median"):
-            table.add_column(heading, justify="left" if heading == "configuration" else "right", no_wrap=True)
+        table = table_of_cells(self._headings, ("done", "running", "best pair", "median"))
         for cell, state in self._cells.items():
             median = statistics.median(state.scores) if state.scores else None
             table.add_row(
-                cell.label,
+                *cell.values,
                 f"{state.done}/{state.total}",
                 str(state.running or ""),
                 "" if state.best is None else f"{state.best:.5g}",
                 "" if median is None else f"{median:.5g}",
             )
         return Group(table, ProgressBar(total=whole, completed=worked), Text(self._tally()))
+
+
+def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:
+    """Return an empty table with a row for each configuration: what distinguishes it, then its figures."""
+    table = Table(box=None, header_style="bold")
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
+    for figure in figures:
+        table.add_column(figure, justify="right", no_wrap=True)
+    return table
 
 
 def duration(seconds: float) -> str:

@@ -49,6 +49,11 @@ class Cell:
         return ", ".join(f"{key}={shown(value)}" for key, value in self.settings) or "all"
 
     @property
+    def values(self) -> list[str]:
+        """What distinguishes it, as text, in the order of the grid."""
+        return [shown(value) for _, value in self.settings]
+
+    @property
     def folder(self) -> Path:
         """Where its runs lie in the directory of the study: a level for each key."""
         return Path(*(f"{key}={_plain(value)}" for key, value in self.settings))
@@ -117,6 +122,12 @@ class Study:
     grid: Mapping[str, tuple[Any, ...]]
     runs: int
     cells: tuple[Cell, ...] = attrs.field(repr=False)
+
+    @property
+    def headings(self) -> list[str]:
+        """What a table calls the keys of the grid: the last part of each, where that is enough."""
+        last = [key.rsplit(".", 1)[-1] for key in self.grid]
+        return [short if last.count(short) == 1 else key for key, short in zip(self.grid, last, strict=True)]
 
     def planned(self, directory: Path) -> Iterator[Planned]:
         """Yield all runs in the order of work: the first of every cell, then the second of every cell."""

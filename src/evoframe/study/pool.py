@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from multiprocessing.queues import SimpleQueue
 from typing import Any, Literal, TypeAlias
 
 import attrs
 import pebble
 
 from evoframe.errors import EvoframeError, LockedError
+from evoframe.processes import WorkerProcesses
 from evoframe.study.worker import Order, Talk, perform
 
-__all__ = ["End", "News", "Pool"]
+__all__ = ["End", "News", "Pool", "end_of"]
 
 News: TypeAlias = tuple[str, int, float | None]
 """Directory, latest turn, best score so far."""
@@ -36,16 +37,14 @@ class Pool:
     """Workers that are ready."""
 
     def __init__(self, workers: int) -> None:
-        spawning = multiprocessing.get_context("spawn")  # a copy of this process would have its locks
-        self._news = spawning.SimpleQueue()
-        self._stop = spawning.Event()
-        self._pool = pebble.ProcessPool(
-            workers, initializer=_begin, initargs=[self._news, self._stop], context=spawning
-        )
+        context = WorkerProcesses.context
+        self._news: SimpleQueue[News] = context.SimpleQueue()
+        self._stop = context.Event()
+        self._processes = WorkerProcesses(workers, _begin, [self._news, self._stop])
 
     def start(self, order: Order) -> Future[End]:
         """Let a worker make a run as soon as one is free."""
-        return self._pool.schedule(_work, [order])
+        return self._processes.schedule(_work, [order])
 
     def news(self) -> Iterator[News]:
         """Yield what the workers have told since the last time."""
@@ -58,8 +57,7 @@ class Pool:
 
     def close(self) -> None:
         """End the workers, whatever they are doing: what they have saved stays."""
-        self._pool.stop()  # type: ignore[no-untyped-call]
-        self._pool.join()
+        self._processes.close()
 
 
 def end_of(future: Future[End]) -> End:
@@ -67,7 +65,7 @@ def end_of(future: Future[End]) -> End:
     try:
         return future.result()
     except pebble.ProcessExpired as error:
-        return End("failed", f"its process ended with code {error.exitcode}")
+        return End("failed", f"its process ended with {WorkerProcesses.ending(error)}")
 
 
 _talk: list[Talk] = []

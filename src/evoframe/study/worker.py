@@ -15,7 +15,7 @@ from evoframe.layers import Layer, Layers, layer_of
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.resolve import resolved
-from evoframe.resuming import reopen
+from evoframe.resuming import is_finished, reopen
 from evoframe.run import Execution, prepare
 from evoframe.store import CONFIG_FILE
 from evoframe.values import Turn
@@ -59,6 +59,8 @@ def perform(order: Order, talk: Talk) -> bool:
     Raises:
         EvoframeError: It cannot be made, or cannot go on.
     """
+    if (order.directory / CONFIG_FILE).exists() and is_finished(order.directory):
+        return True  # by another process, meanwhile
     plugins = discover(order.modules)
     execution = _execution(order, plugins)
     plugins.manager.register(_Teller(str(order.directory), talk), name="evoframe:study")

@@ -1,0 +1,169 @@
+"""``evoframe study``."""
+
+from __future__ import annotations
+
+import csv
+import re
+import signal
+import time
+from pathlib import Path
+
+import pytest
+import toys
+from processes import Evoframe, on_a_terminal, started, told
+from toy_study import STUDY
+
+from evoframe import load_run
+
+SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
+
+
+@pytest.fixture
+def toy(tmp_path: Path) -> list[str]:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "grid.toml").write_text(
+        STUDY.replace('simulator = ["toy-product"', 'simulator = ["toy-slow"')
+    )
+    return ["-p", toys.__file__, "grid.toml"]
+
+
+def tables(directory: Path) -> dict[str, list[list[str]]]:
+    """Return what must be the same for equal studies: all but what was done twice, and for how long."""
+    found = {}
+    for name in ("rows.csv", "curves.csv"):
+        header, *lines = csv.reader((directory / name).read_text().splitlines())
+        kept = [i for i, column in enumerate(header) if column not in ("seconds", "simulations")]
+        found[name] = [[line[i] for i in kept] for line in (header, *lines)]
+    return found
+
+
+def test_runs_the_grid_and_tells_what_came_of_it(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
+    made = evoframe("study", *toy)
+    assert made.returncode == 0, made.stderr
+    assert made.stdout.count(" 3/3 ") == 4
+    assert "12/12 runs done" in made.stderr
+    assert len(list((tmp_path / "studies" / "grid").glob("*/*/0?/champion.json"))) == 12
+    assert len((tmp_path / "studies" / "grid" / "rows.csv").read_text().splitlines()) == 13
+    again = evoframe("study", *toy)
+    assert again.returncode == 0
+    assert again.stderr == ""
+    assert again.stdout == made.stdout
+
+
+def test_a_dry_run_says_how_much_it_is_and_writes_nothing(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    told_of = evoframe("study", *toy, "--dry-run")
+    assert told_of.returncode == 0, told_of.stderr
+    assert "0 finished, 12 to run" in told_of.stdout
+    assert "from the first turn of one run" in told_of.stdout
+    assert not (tmp_path / "studies").exists()
+
+
+def test_more_runs_and_values_are_added_to_what_is_there(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    assert (
+        evoframe(
+            "study", *toy, "--set", 'grid={"collaboration.n"=[1]}', "--set", "runs=2", "--out", "s"
+        ).returncode
+        == 0
+    )
+    config = tmp_path / "s/collaboration.n=1/simulator=toy-slow/00/config.toml"
+    before = config.stat().st_mtime_ns
+    more = evoframe("study", *toy, "--out", "s", "--dry-run")
+    assert "4 finished, 8 to run" in more.stdout
+    assert "from 4 finished runs" in more.stdout
+    assert evoframe("study", *toy, "--out", "s").returncode == 0
+    assert config.stat().st_mtime_ns == before
+
+
+def test_another_study_is_refused(evoframe: Evoframe, toy: list[str]) -> None:
+    assert evoframe("study", *toy, "--set", "runs=1", "--out", "s").returncode == 0
+    refused = evoframe("study", *toy, "--set", "populations.a.size=7", "--out", "s")
+    assert refused.returncode == 2
+    assert (
+        "s/study.toml: is another study; choose another directory:\n  populations.a.size: 6 then, 7 now"
+        in (refused.stderr)
+    )
+    refused = evoframe("study", *toy, "--out", ".")
+    assert refused.returncode == 2
+    assert ".: is not empty, and not the directory of a study; choose another" in refused.stderr
+
+
+def test_runs_that_fail_are_listed_and_retried_on_demand(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    hanging = 'grid.simulator=["toy-product", {name="toy-unsound", sound="sound"}]'
+    arguments = ["study", *toy, "--set", hanging, "--set", "runs=1", "--out", "s"]
+    failed = evoframe(*arguments)
+    assert failed.returncode == 1
+    assert "2 runs have failed; --retry runs them once more" in failed.stderr
+    assert "failed: collaboration.n=1, simulator=" in failed.stderr
+    assert "ZeroDivisionError: not sound" in failed.stderr
+    again = evoframe(*arguments)
+    assert again.returncode == 1  # not tried again
+    assert "runs done" not in again.stderr
+    (tmp_path / "sound").touch()
+    assert evoframe(*arguments, "--retry").returncode == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_that_is_interrupted_ends_with_the_same_tables(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path, number: signal.Signals
+) -> None:
+    arguments = ["study", *toy, "--set", "runs=2"]
+    assert evoframe(*arguments, "--out", "undisturbed").returncode == 0
+    for _ in range(2):
+        with started(tmp_path, *arguments, "--out", "left") as process:
+            told(process, "finished, best pair")
+            time.sleep(0.1)
+            process.send_signal(number)
+            if number == signal.SIGINT:
+                told(process, "Stopping after the turns in progress")
+                told(process, "the same command goes on")
+                assert process.wait(60) == 130
+    assert evoframe(*arguments, "--out", "left").returncode == 0
+    assert tables(tmp_path / "left") == tables(tmp_path / "undisturbed")
+
+
+def test_workers_end_with_the_study(toy: list[str], tmp_path: Path) -> None:
+    hanging = 'grid.simulator=[{name="toy-hanging", beyond=-1.0, mended="mended"}]'
+    with started(tmp_path, "study", *toy, "--set", hanging, "--out", "left") as process:
+        until = time.monotonic() + 60
+        while len(children(process.pid)) < 2 and time.monotonic() < until:
+            time.sleep(0.05)
+        workers = children(process.pid)
+        assert len(workers) >= 2
+        process.kill()
+    until = time.monotonic() + 60
+    while any(Path(f"/proc/{pid}").exists() for pid in workers) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not [pid for pid in workers if Path(f"/proc/{pid}").exists()]
+
+
+def children(pid: int) -> list[int]:
+    listed = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    return [int(child) for child in listed]
+
+
+def test_runs_at_which_another_process_is_are_left_to_it(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    with started(tmp_path, "study", *toy, "--workers", "1", "--out", "s") as process:
+        told(process, "finished, best pair")
+        other = evoframe("study", *toy, "--workers", "1", "--out", "s")
+        code = process.wait(120)
+    assert 0 in (code, other.returncode)  # 1 for the one that left the last run to the other
+    assert "failed" not in other.stderr
+    assert len(list((tmp_path / "s").glob("*/*/0?/champion.json"))) == 12
+    for config in (tmp_path / "s").glob("*/*/0?/config.toml"):
+        assert load_run(config.parent).resumes == []
+
+
+def test_a_picture_on_a_terminal(toy: list[str], tmp_path: Path) -> None:
+    shown = on_a_terminal(["study", *toy], tmp_path, lines=40)
+    text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown)
+    assert re.search(r"n +simulator +done +running +best pair +median", text)
+    assert re.search(r"\d+/12 runs done, [12] running, \d+ left, [\d,]+\s+pairs/s, \d+ s left", text)
+    assert shown.count("\x1b[?25l") == shown.count("\x1b[?25h") > 0  # the cursor

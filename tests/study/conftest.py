@@ -1,0 +1,31 @@
+"""Studies of toys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import toys
+from toy_study import STUDY
+
+from evoframe.plugins import Plugins, Source
+from evoframe.study.plan import Study, read_study
+
+
+@pytest.fixture
+def toy_plugins() -> Plugins:
+    plugins = Plugins()
+    plugins.add(toys, Source("toy-box", "1.0", "toys"))
+    return plugins
+
+
+@pytest.fixture
+def toy_study(tmp_path: Path, toy_plugins: Plugins) -> Callable[..., Study]:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+
+    def read(*overrides: str, text: str = STUDY) -> Study:
+        (tmp_path / "study.toml").write_text(text)
+        return read_study(tmp_path / "study.toml", overrides, toy_plugins)
+
+    return read

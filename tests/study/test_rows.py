@@ -1,0 +1,118 @@
+"""Rows: what is written is read again, and what is no row of a study is named."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+
+import attrs
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from evoframe import InputError, load_run, run
+from evoframe.study.gathered import gather, import_rows
+from evoframe.study.plan import Planned, Study
+from evoframe.study.rows import Row, read_rows, row_of, write_rows
+
+Read = Callable[..., Study]
+
+words = st.text(st.characters(codec="utf-8", exclude_characters="\r\0"), min_size=1, max_size=8)
+finite = st.floats(allow_nan=False, allow_infinity=False)
+rows = st.builds(
+    Row,
+    settings=st.fixed_dictionaries({"a": words, "b.c": words}),
+    run=st.integers(0, 99),
+    seed=st.integers(0, 2**63),
+    configuration=st.just("0123"),
+    evoframe=words,
+    fitness=finite,
+    score=finite,
+    fittest_pair_score=finite,
+    pairs=st.integers(0, 10**9),
+    simulations=st.integers(0, 10**9),
+    seconds=finite,
+    champion=words,
+)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(given_rows=st.lists(rows, max_size=5))
+def test_rows_are_read_as_they_were_written(tmp_path: Path, given_rows: list[Row]) -> None:
+    write_rows(given_rows, tmp_path / "rows.csv")
+    assert read_rows(tmp_path / "rows.csv") == given_rows
+
+
+@pytest.fixture
+def made(toy_study: Read, tmp_path: Path) -> tuple[Study, Path, list[Planned]]:
+    study, directory = toy_study("runs=1"), tmp_path / "here"
+    planned = list(study.planned(directory))
+    for each in planned:
+        config = each.cell.config
+        run(attrs.evolve(config, run=attrs.evolve(config.run, seed=each.seed)), out=each.directory)
+    return study, directory, planned
+
+
+def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]]) -> None:
+    _, _, planned = made
+    finished, row = load_run(planned[3].directory), row_of(planned[3])
+    assert row.settings == {"collaboration.n": "2", "simulator": '{"gain": 2.0, "name": "toy-varied"}'}
+    assert (row.seed, row.score) == (planned[3].seed, finished.champion.score)
+    assert row.champion == hashlib.sha256((finished.directory / "champion.json").read_bytes()).hexdigest()
+    assert row.pairs == sum(work["pairs"] for work in finished.workload)
+    last = [turn["best"] for turn in finished.turns if turn["generation"] == 4]
+    assert row.fitness == row.fitness_curve[-1] == max(last)
+    assert len(row.fitness_curve) == len(row.score_curve) == 5
+    assert list(row.score_curve) == sorted(row.score_curve)
+    assert row.score_curve[0] == max(pair["score"] for pair in finished.pairs if pair["turn"] == 0)
+
+
+def test_rows_of_elsewhere_count_as_finished(
+    made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
+) -> None:
+    study, directory, planned = made
+    gathered = gather(study, directory, planned)
+    there = tmp_path / "there"
+    there.mkdir()
+    import_rows(study, there, [directory / "rows.csv"])
+    again = gather(study, there, list(study.planned(there)))
+    assert [attrs.evolve(row, fitness_curve=(), score_curve=()) for row in again] == [
+        attrs.evolve(row, fitness_curve=(), score_curve=()) for row in gathered
+    ]
+    for row, other in zip(gathered, again, strict=True):
+        assert other.fitness_curve == pytest.approx(row.fitness_curve, rel=1e-5)
+    assert (there / "rows.csv").read_bytes() == (directory / "rows.csv").read_bytes()
+    assert (there / "curves.csv").read_bytes() == (directory / "curves.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("toy-product,0,", "toy-product,7,"), "run 7: is no run of this study"),
+        (("toy-product,0,", "toy-other,0,"), "is no run of this study"),
+        (("toy-product,0,", "toy-product,0,1"), "was made with another configuration or seed"),
+        (("toy-product,0,", "toy-product,zero,"), "line 2: is no row of a study"),
+        (("toy-product,0,", "toy-product,0,,"), "its lines are of different lengths"),
+        (("run,seed", "run,seeds"), "line 2: is no row of a study: 'seed'"),
+    ],
+)
+def test_rows_of_something_else_are_refused(
+    made: tuple[Study, Path, list[Planned]], change: tuple[str, str], message: str
+) -> None:
+    study, directory, planned = made
+    gather(study, directory, planned)
+    path = directory / "rows.csv"
+    path.write_text(path.read_text().replace(*change))
+    with pytest.raises(InputError) as caught:
+        import_rows(study, directory, [path])
+    assert message in str(caught.value)
+
+
+def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
+    study, directory, planned = made
+    rows = gather(study, directory, planned)
+    import_rows(study, directory, [directory / "rows.csv"])
+    write_rows([attrs.evolve(rows[0], champion="other")], directory / "rows.csv")
+    with pytest.raises(InputError, match="another champion than in the rows imported before"):
+        import_rows(study, directory, [directory / "rows.csv"])

@@ -1,0 +1,13 @@
+"""A study of toys."""
+
+STUDY = """
+extends = "toy.toml"
+runs = 3
+
+[run]
+seed = 7
+
+[grid]
+"collaboration.n" = [1, 2]
+simulator = ["toy-product", { name = "toy-varied", gain = 2.0 }]
+"""
