@@ -1,0 +1,1 @@
+"""From the rows of a study to what can be said about it; needs the extra ``report``."""
