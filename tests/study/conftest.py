@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import attrs
 import pytest
 import toys
 from toy_study import STUDY
 
+from evoframe import run
 from evoframe.plugins import Plugins, Source
-from evoframe.study.plan import Study, read_study
+from evoframe.study.plan import Planned, Study, read_study
 
 
 @pytest.fixture
@@ -29,3 +31,13 @@ def toy_study(tmp_path: Path, toy_plugins: Plugins) -> Callable[..., Study]:
         return read_study(tmp_path / "study.toml", overrides, toy_plugins)
 
     return read
+
+
+@pytest.fixture
+def made(toy_study: Callable[..., Study], tmp_path: Path) -> tuple[Study, Path, list[Planned]]:
+    study, directory = toy_study("runs=1"), tmp_path / "here"
+    planned = list(study.planned(directory))
+    for each in planned:
+        config = each.cell.config
+        run(attrs.evolve(config, run=attrs.evolve(config.run, seed=each.seed)), out=each.directory)
+    return study, directory, planned

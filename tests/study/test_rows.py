@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from evoframe import InputError, load_run, run
+from evoframe import InputError, load_run
 from evoframe.study.gathered import gather, import_rows
 from evoframe.study.plan import Planned, Study
 from evoframe.study.rows import Row, read_rows, row_of, write_rows
@@ -44,14 +44,10 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path, given_rows: list[Row
     assert read_rows(tmp_path / "rows.csv") == given_rows
 
 
-@pytest.fixture
-def made(toy_study: Read, tmp_path: Path) -> tuple[Study, Path, list[Planned]]:
-    study, directory = toy_study("runs=1"), tmp_path / "here"
-    planned = list(study.planned(directory))
-    for each in planned:
-        config = each.cell.config
-        run(attrs.evolve(config, run=attrs.evolve(config.run, seed=each.seed)), out=each.directory)
-    return study, directory, planned
+def kept(study: Study, directory: Path, planned: list[Planned]) -> list[Row]:
+    rows = gather(study, directory, planned)
+    write_rows(rows, directory / "rows.csv")
+    return rows
 
 
 def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]]) -> None:
@@ -72,11 +68,11 @@ def test_rows_of_elsewhere_count_as_finished(
     made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
 ) -> None:
     study, directory, planned = made
-    gathered = gather(study, directory, planned)
+    gathered = kept(study, directory, planned)
     there = tmp_path / "there"
     there.mkdir()
     import_rows(study, there, [directory / "rows.csv"])
-    again = gather(study, there, list(study.planned(there)))
+    again = kept(study, there, list(study.planned(there)))
     assert [attrs.evolve(row, fitness_curve=(), score_curve=()) for row in again] == [
         attrs.evolve(row, fitness_curve=(), score_curve=()) for row in gathered
     ]
@@ -101,7 +97,7 @@ def test_rows_of_something_else_are_refused(
     made: tuple[Study, Path, list[Planned]], change: tuple[str, str], message: str
 ) -> None:
     study, directory, planned = made
-    gather(study, directory, planned)
+    kept(study, directory, planned)
     path = directory / "rows.csv"
     path.write_text(path.read_text().replace(*change))
     with pytest.raises(InputError) as caught:
@@ -111,7 +107,7 @@ def test_rows_of_something_else_are_refused(
 
 def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
     study, directory, planned = made
-    rows = gather(study, directory, planned)
+    rows = kept(study, directory, planned)
     import_rows(study, directory, [directory / "rows.csv"])
     write_rows([attrs.evolve(rows[0], champion="other")], directory / "rows.csv")
     with pytest.raises(InputError, match="another champion than in the rows imported before"):

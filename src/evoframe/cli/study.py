@@ -20,7 +20,7 @@ from evoframe.study.estimate import estimated
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study, read_study, study_names
 from evoframe.study.progress import Status
-from evoframe.study.rows import Row
+from evoframe.study.rows import ROWS_FILE, Row, write_rows
 from evoframe.study.worker import Order
 
 __all__ = ["study"]
@@ -160,6 +160,7 @@ class _Sitting:
             self, statuses=survey(self.study, self.directory, _imported(self.study, self.directory))
         )
         rows = self._rows(after.finished)
+        write_rows(list(rows.values()), self.directory / ROWS_FILE)
         if is_quiet(self.ctx):
             click.echo(self.directory)
         else:

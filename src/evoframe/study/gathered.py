@@ -53,18 +53,15 @@ def imported_rows(study: Study, directory: Path) -> dict[Planned, Row]:
 
 
 def gather(study: Study, directory: Path, finished: Sequence[Planned]) -> list[Row]:
-    """Return the rows of all finished runs, in the order of work, and keep them as tables.
+    """Return the rows of all finished runs, in the order of work.
 
     What a run's own directory says comes before what was imported.
 
     Raises:
         InputError: The directory of a run is damaged.
-        RunError: The tables cannot be written.
     """
     elsewhere = imported_rows(study, directory)
-    rows = [elsewhere[run] if _is_elsewhere(run, elsewhere) else row_of(run) for run in finished]
-    write_rows(rows, directory / ROWS_FILE)
-    return rows
+    return [elsewhere[run] if _is_elsewhere(run, elsewhere) else row_of(run) for run in finished]
 
 
 def _is_elsewhere(run: Planned, elsewhere: Mapping[Planned, Row]) -> bool:

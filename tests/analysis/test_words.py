@@ -1,0 +1,51 @@
+"""Words say what the numbers say."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from evoframe.analysis.statistics import compare
+from evoframe.analysis.words import conclusion
+
+RNG = np.random.default_rng(1)
+NOISE = [RNG.normal(0, 1, 30).tolist() for _ in range(3)]
+
+
+def test_groups_that_are_alike() -> None:
+    words = conclusion(compare(dict(zip(("AM", "WM", "GM"), NOISE, strict=True))), "the score")
+    assert words.startswith("Between ")
+    assert "the score is not found to differ as a whole (Kruskal-Wallis, H = " in words
+    assert "no pair of them should be called different" in words
+    assert (
+        "With 30 runs in the smallest group, a difference is found in four of five cases if one beats"
+        in words
+    )
+    assert "smaller ones cannot be excluded." in words
+
+
+def test_groups_that_differ() -> None:
+    shifted = [[value + 100 * place for value in NOISE[place]] for place in range(3)]
+    words = conclusion(compare(dict(zip(("AM", "WM", "GM"), shifted, strict=True))), "the score")
+    assert words.startswith(
+        "Between GM, WM and AM, the score differs as a whole (Kruskal-Wallis, H = 79.12, p < 0.001"
+    )
+    assert "GM beats AM in 100% of all comparisons of two runs (p < 0.001)" in words
+    assert "(Dunn's test, corrected after Holm)." in words
+    assert "not found to differ" not in words
+
+
+def test_one_that_differs_from_two_that_do_not() -> None:
+    groups = {"AM": NOISE[0], "WM": NOISE[1], "GM": [value - 100 for value in NOISE[2]]}
+    words = conclusion(compare(groups, "none"), "the score")
+    assert "AM beats GM in 100% of" in words
+    assert (
+        "(Dunn's test, not corrected for the number of pairs). The other pair is not found to differ."
+        in words
+    )
+
+
+def test_too_few_runs() -> None:
+    words = conclusion(compare({"AM": [1.0], "WM": [2.0, 3.0]}), "the score")
+    assert words.endswith(
+        "With 1 run in the smallest group, a difference would have to be enormous to be found."
+    )

@@ -1,0 +1,37 @@
+"""``load_study``: tidy tables of what is finished."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from evoframe.analysis.study_data import load_study
+from evoframe.plugins import Plugins
+from evoframe.study.conduct import claim
+from evoframe.study.gathered import gather
+from evoframe.study.plan import Planned, Study
+
+
+def test_a_study_is_read_as_it_stands(
+    made: tuple[Study, Path, list[Planned]], toy_plugins: Plugins, tmp_path: Path
+) -> None:
+    study, _, planned = made
+    there = tmp_path / "there"
+    claim(study, there)
+    for run in planned[:3]:
+        shutil.copytree(run.directory, there / run.cell.folder / "00")
+    before = sorted(path for path in there.rglob("*") if path.is_file())
+    data = load_study(there, plugins=toy_plugins)
+    assert sorted(path for path in there.rglob("*") if path.is_file()) == before
+    assert list(data.rows) == gather(study, there, list(study.planned(there))[:3])
+    assert (data.label, data.planned, data.unit) == ("there", 4, "")
+    assert data.keys == ("collaboration.n", "simulator")
+    assert data.panels == [{"collaboration.n": "1"}, {"collaboration.n": "2"}]
+    assert list(data.of(data.panels[1])) == ["toy-product"]
+    frame = data.frame
+    assert list(frame["score"]) == [row.score for row in data.rows]
+    assert list(frame.columns[:4]) == ["collaboration.n", "simulator", "run", "seed"]
+    curves = data.curves
+    assert len(curves) == 3 * 5
+    last = curves[curves["generation"] == 4]
+    assert list(last["fitness"]) == [row.fitness for row in data.rows]
