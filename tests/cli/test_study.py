@@ -60,6 +60,13 @@ def test_a_dry_run_says_how_much_it_is_and_writes_nothing(
     assert not (tmp_path / "studies").exists()
 
 
+def test_a_dry_run_changes_nothing_that_is_there(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
+    assert evoframe("study", *toy, "--set", "runs=1", "--out", "s").returncode == 0
+    before = {path: path.read_bytes() for path in (tmp_path / "s").rglob("*") if path.is_file()}
+    assert evoframe("study", *toy, "--out", "s", "--dry-run").returncode == 0
+    assert {path: path.read_bytes() for path in (tmp_path / "s").rglob("*") if path.is_file()} == before
+
+
 def test_more_runs_and_values_are_added_to_what_is_there(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:

@@ -19,7 +19,7 @@ from evoframe.analysis.statistics import Comparison, compare
 from evoframe.analysis.study_data import StudyData, Yardstick
 from evoframe.study.rows import Row
 
-__all__ = ["NAMES", "curves", "final_values", "finals", "title_of"]
+__all__ = ["NAMES", "called", "curves", "final_values", "finals", "title_of"]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
@@ -42,7 +42,7 @@ def curves(data: StudyData, panel: dict[str, str], yardstick: Yardstick) -> Figu
         drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * _factor(data.unit)
         generations = np.arange(drawn.shape[1])
         style: dict[str, Any] = {"color": COLOURS[number % 8], "linestyle": DASHES[number % 4], "lw": 1.2}
-        axes.plot(generations, drawn.mean(axis=0), label=f"{_shown(value)} ({len(rows)})", **style)
+        axes.plot(generations, drawn.mean(axis=0), label=f"{called(value)} ({len(rows)})", **style)
         if len(rows) > 1:
             axes.fill_between(generations, *_band(drawn), color=style["color"], alpha=0.18, lw=0)
     axes.set(xlabel="generation", ylabel=_label(yardstick, data.unit))
@@ -78,7 +78,7 @@ def finals(data: StudyData, panel: dict[str, str], yardstick: Yardstick) -> Figu
         axes.plot(beside, values, "o", color=COLOURS[number % 8], ms=3, mew=0, alpha=0.6)
     if len(groups) > 1:
         _letter(axes, compare(groups), list(groups))
-    labels = [f"{_shown(value)}\n{len(values)} runs" for value, values in groups.items()]
+    labels = [f"{name}\n{len(values)} runs" for name, values in groups.items()]
     axes.set_xticks(places, labels)
     axes.set(xlabel=_key(data), ylabel=_label(yardstick, data.unit), xlim=(0.5, len(groups) + 0.5))
     axes.set_title(title_of(panel), size=9, pad=12)  # the letters are below it
@@ -86,8 +86,8 @@ def finals(data: StudyData, panel: dict[str, str], yardstick: Yardstick) -> Figu
 
 
 def final_values(rows: Mapping[str, Sequence[Row]], yardstick: Yardstick) -> dict[str, list[float]]:
-    """Return the final values of each group of runs."""
-    return {value: [getattr(row, yardstick) for row in group] for value, group in rows.items()}
+    """Return the final values of each group of runs, by what it is called."""
+    return {called(value): [getattr(row, yardstick) for row in group] for value, group in rows.items()}
 
 
 def title_of(panel: Mapping[str, str]) -> str:
@@ -140,5 +140,6 @@ def _key(data: StudyData) -> str:
     return data.keys[-1].rsplit(".", 1)[-1]
 
 
-def _shown(value: str) -> str:
+def called(value: str) -> str:
+    """Return what a value of the grid is called in an article."""
     return value.upper() if len(value) == 2 else value  # AM, as the paper writes it

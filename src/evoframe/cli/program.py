@@ -16,6 +16,7 @@ from evoframe.cli.context import common_options, plugins_of
 from evoframe.cli.doctor import doctor
 from evoframe.cli.export import export
 from evoframe.cli.plugins import plugins
+from evoframe.cli.report import report
 from evoframe.cli.resume import resume
 from evoframe.cli.run import run
 from evoframe.cli.signals import exit_code
@@ -102,7 +103,7 @@ def cli() -> None:
     """
 
 
-for command in (completion, config, doctor, export, plugins, resume, run, simulate, study, verify):
+for command in (completion, config, doctor, export, plugins, report, resume, run, simulate, study, verify):
     cli.add_command(command)
 
 

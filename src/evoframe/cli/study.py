@@ -15,7 +15,7 @@ from evoframe.cli.context import common_options, is_quiet, modules_of, output, p
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
 from evoframe.cores import available_cores
-from evoframe.study.conduct import claim, conduct, survey
+from evoframe.study.conduct import claim, conduct, refuse_another, survey
 from evoframe.study.estimate import estimated
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study, read_study, study_names
@@ -87,9 +87,11 @@ def study(
     """
     found = read_study(source, overrides, plugins_of(ctx))
     directory = out or Path("studies") / found.label
-    if not dry_run or directory.exists():
+    if not dry_run:
         claim(found, directory)
         import_rows(found, directory, tables)
+    elif directory.exists():
+        refuse_another(found, directory)
     sitting = _Sitting(ctx, found, directory, survey(found, directory, _imported(found, directory)), retry)
     if dry_run:
         sitting.tell()

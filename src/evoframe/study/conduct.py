@@ -23,7 +23,7 @@ from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.progress import Status, forget_failure, note_failure, status
 from evoframe.study.worker import Order
 
-__all__ = ["STUDY_FILE", "Watcher", "claim", "conduct", "survey"]
+__all__ = ["STUDY_FILE", "Watcher", "claim", "conduct", "refuse_another", "survey"]
 
 STUDY_FILE = "study.toml"
 
@@ -47,28 +47,40 @@ class Watcher(Protocol):
 
 
 def claim(study: Study, directory: Path) -> None:
-    """Make the directory of a study, or make sure that it is one of this study.
+    """Make the directory of a study, or note there what the study is now.
+
+    Raises:
+        InputError: As :func:`refuse_another`, or it cannot be made.
+        RunError: It cannot be written.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
+    refuse_another(study, directory)
+    write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
+
+
+def refuse_another(study: Study, directory: Path) -> None:
+    """Make sure that a directory is empty, or that of this study.
 
     More runs and more values of the grid are welcome; all other settings must be those that it has.
 
     Raises:
-        InputError: It is the directory of another study, or of something else, or cannot be written.
+        InputError: It is the directory of another study, or of something else.
     """
     path = directory / STUDY_FILE
     try:
-        directory.mkdir(parents=True, exist_ok=True)
         occupied = not path.is_file() and any(directory.iterdir())
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
     if occupied:
         raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
-    tables = _tables(study)
     if path.is_file():
-        others = differences(_shared(_read(path)), _shared(tables))
+        others = differences(_shared(_read(path)), _shared(_tables(study)))
         if others:
             listed = "\n  ".join(others)
             raise InputError(f"{path}: is another study; choose another directory:\n  {listed}")
-    write_atomically(path, tomli_w.dumps(tables).encode())
 
 
 def survey(study: Study, directory: Path, imported: Iterable[Path] = ()) -> dict[Planned, Status]:

@@ -1,0 +1,87 @@
+"""``evoframe report``."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+from pathlib import Path
+
+import pytest
+import toys
+from processes import Evoframe, python
+from toy_study import STUDY
+
+NAMES = [
+    f"{kind}-{yardstick}-n-{n}"
+    for kind, yardstick, n in itertools.product(("curves", "finals"), ("score", "fitness"), (1, 2))
+]
+
+
+@pytest.fixture
+def study(evoframe: Evoframe, tmp_path: Path) -> list[str]:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "grid.toml").write_text(STUDY)
+    made = evoframe("study", "-p", toys.__file__, "grid.toml", "--out", "s")
+    assert made.returncode == 0, made.stderr
+    return ["-p", toys.__file__, "s"]
+
+
+def contents(directory: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in directory.iterdir()}
+
+
+def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], tmp_path: Path) -> None:
+    made = evoframe("report", *study)
+    assert made.returncode == 0, made.stderr
+    written = contents(tmp_path / "s" / "report")
+    figures = {f"{name}.{ending}" for name in NAMES for ending in ("pdf", "svg", "png")}
+    tables = {f"{name}.{ending}" for name in ("summary", "pairs", "ranking") for ending in ("csv", "tex")}
+    assert set(written) == {*figures, *tables, "conclusions.txt"}
+    assert written["curves-score-n-1.pdf"].startswith(b"%PDF")
+    assert written["curves-score-n-1.png"].startswith(b"\x89PNG")
+    assert b"<svg" in written["curves-score-n-1.svg"]
+    rankings = list(csv.DictReader(written["ranking.csv"].decode().splitlines()))
+    assert [(row["collaboration.n"], row["yardstick"]) for row in rankings] == [
+        ("1", "score"), ("1", "fitness"), ("2", "score"), ("2", "fitness"),
+    ]  # fmt: skip
+    assert written["summary.tex"].startswith(b"\\begin{tabular}")
+    assert "s: 12 of 12 runs are finished." in made.stdout
+    assert made.stdout.count("With 3 runs in the smallest group, a difference would have to be enormous") == 4
+    again = evoframe("report", *study)
+    assert again.returncode == 0
+    assert contents(tmp_path / "s" / "report") == written
+
+
+def test_of_a_study_that_is_not_finished_says_so(
+    evoframe: Evoframe, study: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "s" / "study.toml"
+    path.write_text(path.read_text().replace("runs = 3", "runs = 4"))
+    told_of = evoframe("report", *study, "--correction", "none", "--out", "elsewhere")
+    assert "12 of 16 runs are finished. What follows may change with the others." in told_of.stdout
+
+
+@pytest.mark.parametrize(
+    ("directory", "message"),
+    [
+        ("nowhere", "nowhere/study.toml: cannot be read: No such file or directory"),
+        ("empty", "empty: no run of this study is finished, so there is nothing to report"),
+    ],
+)
+def test_where_there_is_nothing_to_report_it_says_so(
+    evoframe: Evoframe, study: list[str], tmp_path: Path, directory: str, message: str
+) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "empty" / "study.toml").write_bytes((tmp_path / "s" / "study.toml").read_bytes())
+    refused = evoframe("report", *study[:2], directory)
+    assert refused.returncode == 2
+    assert f"Error: {message}" in refused.stderr
+
+
+def test_says_what_has_to_be_installed(study: list[str], tmp_path: Path) -> None:
+    program = "import sys; sys.modules['matplotlib'] = None; from evoframe.cli import main; main()"
+    refused = python("-c", program, "report", *study, directory=tmp_path)
+    assert refused.returncode == 2
+    assert refused.stderr.splitlines()[-1] == (
+        "Error: matplotlib is not installed; for reports: pip install 'evoframe[report]'"
+    )
