@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 import re
 import signal
 import time
@@ -132,6 +133,22 @@ def test_that_is_interrupted_ends_with_the_same_tables(
                 assert process.wait(60) == 130
     assert evoframe(*arguments, "--out", "left").returncode == 0
     assert tables(tmp_path / "left") == tables(tmp_path / "undisturbed")
+
+
+def test_a_run_whose_process_is_killed_has_failed_and_the_others_go_on(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    arguments = ["study", *toy, "--workers", "1", "--set", "runs=1", "--out", "s"]
+    with started(tmp_path, *arguments) as process:
+        until = time.monotonic() + 60
+        while not list((tmp_path / "s").glob("*/*/00/run.db")) and time.monotonic() < until:
+            time.sleep(0.01)
+        for child in children(process.pid):
+            if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes():
+                os.kill(child, signal.SIGKILL)
+        assert "its process ended with the signal SIGKILL" in told(process, "failed")
+        assert process.wait(60) == 1
+    assert evoframe(*arguments, "--retry").returncode == 0
 
 
 def test_workers_end_with_the_study(toy: list[str], tmp_path: Path) -> None:

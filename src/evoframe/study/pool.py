@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.queues import SimpleQueue
 from typing import Any, Literal, TypeAlias
 
@@ -40,11 +41,18 @@ class Pool:
         context = WorkerProcesses.context
         self._news: SimpleQueue[News] = context.SimpleQueue()
         self._stop = context.Event()
-        self._processes = WorkerProcesses(workers, _begin, [self._news, self._stop])
+        self._workers = workers
+        self._processes = self._started()
 
     def start(self, order: Order) -> Future[End]:
         """Let a worker make a run as soon as one is free."""
+        if not self._processes.active:  # all of them were lost at once
+            self._processes.close()
+            self._processes = self._started()
         return self._processes.schedule(_work, [order])
+
+    def _started(self) -> WorkerProcesses:
+        return WorkerProcesses(self._workers, _begin, [self._news, self._stop])
 
     def news(self) -> Iterator[News]:
         """Yield what the workers have told since the last time."""
@@ -66,6 +74,8 @@ def end_of(future: Future[End]) -> End:
         return future.result()
     except pebble.ProcessExpired as error:
         return End("failed", f"its process ended with {WorkerProcesses.ending(error)}")
+    except BrokenProcessPool:
+        return End("failed", "there was no process to make it: all of them were ended, or cannot be started")
 
 
 _talk: list[Talk] = []
