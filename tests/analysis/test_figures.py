@@ -4,35 +4,35 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evoframe.analysis.figures import curves, finals, title_of
+from evoframe.analysis.figures import NAMES, curves, finals, ranks
+from evoframe.analysis.statistics import compare
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, Yardstick
 from evoframe.study.rows import read_rows
 
 ROWS = Path(__file__).parents[2] / "docs" / "results" / "paper" / "rows.csv"
-PANEL = {"collaboration.n": "2"}
 
 
 @pytest.fixture(scope="module")
 def data() -> StudyData:
-    return StudyData("paper", ("collaboration.n", "aggregator"), "m", 600, tuple(read_rows(ROWS)))
+    rows = tuple(row for row in read_rows(ROWS) if row.settings["collaboration.n"] == "2")
+    return StudyData("paper", ("collaboration.n", "aggregator"), "m", 600, rows)
 
 
 @pytest.mark.parametrize("yardstick", YARDSTICKS)
 def test_curves_are_the_means_of_runs_within_their_bands(data: StudyData, yardstick: Yardstick) -> None:
-    [axes] = curves(data, PANEL, yardstick).axes
-    assert (
-        axes.get_ylabel() == {"score": "best pair simulated (mm)", "fitness": "best fitness (mm)"}[yardstick]
-    )
-    assert axes.get_title() == title_of(PANEL) == "n = 2"
-    groups = data.of(PANEL)
+    [view] = data.views(yardstick)
+    [axes] = curves(view, yardstick, data.unit).axes
+    assert axes.get_ylabel() == f"{NAMES[yardstick]} (mm)"
+    assert axes.get_title() == view.title == "n = 2"
     legend = axes.get_legend()
     assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == ["AM (30)", "WM (30)", "GM (30)", "HM (30)"]
-    for line, band, rows in zip(axes.lines, axes.collections, groups.values(), strict=True):
+    assert [text.get_text() for text in legend.get_texts()] == ["AM: 30", "WM: 30", "GM: 30", "HM: 30"]
+    for line, band, rows in zip(axes.lines, axes.collections, view.groups.values(), strict=True):
         drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows])
         assert np.asarray(line.get_ydata()) == pytest.approx(1000 * drawn.mean(axis=0))
         low, high = _edges(np.asarray(band.get_paths()[0].vertices), at=200)
@@ -48,12 +48,38 @@ def _edges(vertices: NDArray[np.float64], at: int) -> tuple[float, float]:
 
 @pytest.mark.parametrize("yardstick", YARDSTICKS)
 def test_final_values_are_all_there_with_their_letters(data: StudyData, yardstick: Yardstick) -> None:
-    [axes] = finals(data, PANEL, yardstick).axes
+    [view] = data.views(yardstick)
+    [axes] = finals(view, yardstick, data.unit, compare(view.values(yardstick))).axes
     points = [line for line in axes.lines if line.get_marker() == "o"]
-    for line, rows in zip(points, data.of(PANEL).values(), strict=True):
+    for line, rows in zip(points, view.groups.values(), strict=True):
         values = sorted(1000 * getattr(row, yardstick) for row in rows)
         assert sorted(np.asarray(line.get_ydata())) == pytest.approx(values)
     assert [text.get_text() for text in axes.texts] == ["a"] * 4
     assert [label.get_text() for label in axes.get_xticklabels()] == [
         f"{name}\n30 runs" for name in ("AM", "WM", "GM", "HM")
     ]
+
+
+def test_ranks_name_all_groups(data: StudyData) -> None:
+    [view] = data.views("score")
+    comparison = compare(view.values("score"))
+    [axes] = ranks(comparison, view.title).axes
+    shown = " ".join(text.get_text() for text in axes.texts)
+    assert all(name in shown for name in view.groups)
+    assert sum(group.mean_rank for group in comparison.groups) == pytest.approx(4 * 121 / 2 / 1)
+
+
+def test_the_best_of_each_view_are_compared_too(data: StudyData) -> None:
+    moved = [
+        attrs.evolve(
+            row,
+            settings={**row.settings, "collaboration.n": "3"},
+            score=row.score + (row.settings["aggregator"] == "hm"),
+        )
+        for row in data.rows
+    ]
+    both = attrs.evolve(data, rows=(*data.rows, *moved))
+    *views, best = both.views("score")
+    assert [view.title for view in views] == ["n = 2", "n = 3"]
+    assert best.title == "best of each"
+    assert list(best.groups) == ["GM (n = 2)", "HM (n = 3)"]

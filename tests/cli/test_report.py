@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import itertools
 from pathlib import Path
 
 import pytest
@@ -12,8 +11,10 @@ from processes import Evoframe, python
 from toy_study import STUDY
 
 NAMES = [
-    f"{kind}-{yardstick}-n-{n}"
-    for kind, yardstick, n in itertools.product(("curves", "finals"), ("score", "fitness"), (1, 2))
+    f"{kind}-{yardstick}-{view}"
+    for kind in ("curves", "finals", "ranks")
+    for yardstick in ("score", "fitness")
+    for view in ("n-1", "n-2", "best-of-each")
 ]
 
 
@@ -41,12 +42,12 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     assert written["curves-score-n-1.png"].startswith(b"\x89PNG")
     assert b"<svg" in written["curves-score-n-1.svg"]
     rankings = list(csv.DictReader(written["ranking.csv"].decode().splitlines()))
-    assert [(row["collaboration.n"], row["yardstick"]) for row in rankings] == [
-        ("1", "score"), ("1", "fitness"), ("2", "score"), ("2", "fitness"),
-    ]  # fmt: skip
+    assert [(row["view"], row["yardstick"]) for row in rankings] == [
+        (view, yardstick) for yardstick in ("score", "fitness") for view in ("n = 1", "n = 2", "best of each")
+    ]
     assert written["summary.tex"].startswith(b"\\begin{tabular}")
     assert "s: 12 of 12 runs are finished." in made.stdout
-    assert made.stdout.count("With 3 runs in the smallest group, a difference would have to be enormous") == 4
+    assert made.stdout.count("With 3 runs in the smallest group, a difference would have to be enormous") == 6
     again = evoframe("report", *study)
     assert again.returncode == 0
     assert contents(tmp_path / "s" / "report") == written

@@ -26,8 +26,9 @@ def test_a_study_is_read_as_it_stands(
     assert list(data.rows) == gather(study, there, list(study.planned(there))[:3])
     assert (data.label, data.planned, data.unit) == ("there", 4, "")
     assert data.keys == ("collaboration.n", "simulator")
-    assert data.panels == [{"collaboration.n": "1"}, {"collaboration.n": "2"}]
-    assert list(data.of(data.panels[1])) == ["toy-product"]
+    views = data.views("score")
+    assert [view.title for view in views] == ["n = 1", "n = 2", "best of each"]
+    assert list(views[1].groups) == ["toy-product"]
     frame = data.frame
     assert list(frame["score"]) == [row.score for row in data.rows]
     assert list(frame.columns[:4]) == ["collaboration.n", "simulator", "run", "seed"]

@@ -10,16 +10,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
+import scikit_posthocs as posthocs
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy import stats
 
-from evoframe.analysis.statistics import Comparison, compare
-from evoframe.analysis.study_data import StudyData, Yardstick
-from evoframe.study.rows import Row
+from evoframe.analysis.statistics import Comparison
+from evoframe.analysis.study_data import View, Yardstick
 
-__all__ = ["NAMES", "called", "curves", "final_values", "finals", "title_of"]
+__all__ = ["NAMES", "curves", "finals", "ranks"]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
@@ -29,40 +30,41 @@ _WIDTH = 3.5  # inches: a column of an article
 _RESAMPLES = 2000
 
 
-def curves(data: StudyData, panel: dict[str, str], yardstick: Yardstick) -> Figure:
+def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     """Return the mean over runs for each generation, with its 95 % band (bootstrap over runs).
 
     Args:
-        data: The study.
-        panel: Which of :attr:`~evoframe.analysis.study_data.StudyData.panels`.
+        view: The groups.
         yardstick: What is drawn.
+        unit: Of scores; metres are shown as millimetres.
     """
     figure, axes = _figure()
-    for number, (value, rows) in enumerate(data.of(panel).items()):
-        drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * _factor(data.unit)
+    for number, (name, rows) in enumerate(view.groups.items()):
+        drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * _factor(unit)
         generations = np.arange(drawn.shape[1])
         style: dict[str, Any] = {"color": COLOURS[number % 8], "linestyle": DASHES[number % 4], "lw": 1.2}
-        axes.plot(generations, drawn.mean(axis=0), label=f"{called(value)} ({len(rows)})", **style)
+        axes.plot(generations, drawn.mean(axis=0), label=f"{name}: {len(rows)}", **style)
         if len(rows) > 1:
             axes.fill_between(generations, *_band(drawn), color=style["color"], alpha=0.18, lw=0)
-    axes.set(xlabel="generation", ylabel=_label(yardstick, data.unit))
-    axes.set_title(title_of(panel), size=9)
-    axes.legend(title=f"{_key(data)} (runs)", frameon=False, loc="lower right", fontsize=7, title_fontsize=7)
+    axes.set(xlabel="generation", ylabel=_label(yardstick, unit))
+    axes.set_title(view.title, size=9)
+    axes.legend(title=f"{view.key}: runs", frameon=False, loc="lower right", fontsize=7, title_fontsize=7)
     axes.margins(x=0)
     return figure
 
 
-def finals(data: StudyData, panel: dict[str, str], yardstick: Yardstick) -> Figure:
+def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Comparison | None = None) -> Figure:
     """Return every run's final value, with box plots, and letters: what shares one is not different.
 
     Args:
-        data: The study.
-        panel: Which of :attr:`~evoframe.analysis.study_data.StudyData.panels`.
+        view: The groups.
         yardstick: What is drawn.
+        unit: Of scores; metres are shown as millimetres.
+        comparison: Of the groups, for the letters.
     """
     figure, axes = _figure()
-    groups = final_values(data.of(panel), yardstick)
-    scaled = [np.array(values) * _factor(data.unit) for values in groups.values()]
+    groups = view.values(yardstick)
+    scaled = [np.array(values) * _factor(unit) for values in groups.values()]
     places = np.arange(1, len(groups) + 1)
     boxes = axes.boxplot(
         scaled,
@@ -76,27 +78,40 @@ def finals(data: StudyData, panel: dict[str, str], yardstick: Yardstick) -> Figu
     for number, (place, values) in enumerate(zip(places, scaled, strict=True)):
         beside = place - 0.18 + rng.uniform(-0.1, 0.1, len(values))
         axes.plot(beside, values, "o", color=COLOURS[number % 8], ms=3, mew=0, alpha=0.6)
-    if len(groups) > 1:
-        _letter(axes, compare(groups), list(groups))
+    if comparison is not None:
+        _letter(axes, comparison, list(groups))
     labels = [f"{name}\n{len(values)} runs" for name, values in groups.items()]
     axes.set_xticks(places, labels)
-    axes.set(xlabel=_key(data), ylabel=_label(yardstick, data.unit), xlim=(0.5, len(groups) + 0.5))
-    axes.set_title(title_of(panel), size=9, pad=12)  # the letters are below it
+    axes.set(xlabel=view.key, ylabel=_label(yardstick, unit), xlim=(0.5, len(groups) + 0.5))
+    axes.set_title(view.title, size=9, pad=12)  # the letters are below it
     return figure
 
 
-def final_values(rows: Mapping[str, Sequence[Row]], yardstick: Yardstick) -> dict[str, list[float]]:
-    """Return the final values of each group of runs, by what it is called."""
-    return {called(value): [getattr(row, yardstick) for row in group] for value, group in rows.items()}
+def ranks(comparison: Comparison, title: str) -> Figure:
+    """Return the mean rank of each group on a line, the best at the right; bars join what is not different.
+
+    Source: the critical difference diagrams of Demsar 2006, here with the p-values of the comparison.
+    """
+    figure, axes = _figure(height=0.7 + 0.22 * len(comparison.groups))
+    names = [group.name for group in comparison.groups]
+    p = pd.DataFrame(1.0, index=names, columns=names)
+    for pair in comparison.pairs:
+        p.loc[pair.first, pair.second] = p.loc[pair.second, pair.first] = pair.p
+    posthocs.critical_difference_diagram(
+        {group.name: group.mean_rank for group in comparison.groups},
+        p,
+        ax=axes,
+        alpha=comparison.alpha,
+        label_props={"size": 7},
+        text_h_margin=0.02 * max(1.0, np.ptp([group.mean_rank for group in comparison.groups])),
+        color_palette=["black"] * len(names),
+    )
+    axes.set_title(f"{title}: mean rank", size=9)
+    return figure
 
 
-def title_of(panel: Mapping[str, str]) -> str:
-    """Return what a panel is called: ``n = 2``."""
-    return ", ".join(f"{key.rsplit('.', 1)[-1]} = {value}" for key, value in panel.items())
-
-
-def _figure() -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(_WIDTH, 2.6), layout="constrained")
+def _figure(height: float = 2.6) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(_WIDTH, height), layout="constrained")
     axes = figure.add_subplot()
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=7)
@@ -134,12 +149,3 @@ def _factor(unit: str) -> float:
 def _label(yardstick: Yardstick, unit: str) -> str:
     shown = {"m": " (mm)", "": ""}.get(unit, f" ({unit})")
     return f"{NAMES[yardstick]}{shown}"
-
-
-def _key(data: StudyData) -> str:
-    return data.keys[-1].rsplit(".", 1)[-1]
-
-
-def called(value: str) -> str:
-    """Return what a value of the grid is called in an article."""
-    return value.upper() if len(value) == 2 else value  # AM, as the paper writes it

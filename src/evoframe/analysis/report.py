@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,9 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
-from evoframe.analysis.figures import NAMES, curves, finals, title_of
+from evoframe.analysis.figures import NAMES, curves, finals, ranks
 from evoframe.analysis.statistics import Correction
-from evoframe.analysis.study_data import YARDSTICKS, StudyData
+from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.analysis.tables import Compared, comparisons, pairs_table, ranking_table, summary_table
 from evoframe.analysis.words import conclusion
 from evoframe.errors import InputError
@@ -51,7 +52,7 @@ def write_report(data: StudyData, directory: Path, correction: Correction = "hol
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a report: {error.strerror}") from error
     found = comparisons(data, correction)
-    written = _figures(data, directory)
+    written = _figures(data, found, directory)
     for name, table in (
         ("summary", summary_table(found)),
         ("pairs", pairs_table(found)),
@@ -63,14 +64,23 @@ def write_report(data: StudyData, directory: Path, correction: Correction = "hol
     return [*written, path]
 
 
-def _figures(data: StudyData, directory: Path) -> list[Path]:
+def _figures(data: StudyData, found: Compared, directory: Path) -> list[Path]:
+    compared = {(view.title, yardstick): comparison for view, yardstick, comparison in found}
     written = []
-    for panel in data.panels:
-        for yardstick in YARDSTICKS:
-            name = re.sub(r"[^A-Za-z0-9.]+", "-", f"{yardstick} {title_of(panel)}").strip("-")
-            written += _drawn(curves(data, panel, yardstick), directory / f"curves-{name}")
-            written += _drawn(finals(data, panel, yardstick), directory / f"finals-{name}")
+    for yardstick, view in _views(data):
+        name = re.sub(r"[^A-Za-z0-9.]+", "-", f"{yardstick} {view.title}").strip("-")
+        comparison = compared.get((view.title, yardstick))
+        written += _drawn(curves(view, yardstick, data.unit), directory / f"curves-{name}")
+        written += _drawn(finals(view, yardstick, data.unit, comparison), directory / f"finals-{name}")
+        if comparison is not None:
+            written += _drawn(ranks(comparison, view.title), directory / f"ranks-{name}")
     return written
+
+
+def _views(data: StudyData) -> Iterator[tuple[Yardstick, View]]:
+    for yardstick in YARDSTICKS:
+        for view in data.views(yardstick):
+            yield yardstick, view
 
 
 def _drawn(figure: Figure, path: Path) -> list[Path]:
@@ -104,8 +114,7 @@ def _words(data: StudyData, found: Compared) -> str:
     if len(data.rows) < data.planned:
         finished += " What follows may change with the others."
     parts = [f"{data.label}: {finished}"]
-    for panel, yardstick, comparison in found:
-        what = f"the {NAMES[yardstick]}"
-        heading = ", ".join(filter(None, [title_of(panel), NAMES[yardstick]]))
+    for view, yardstick, comparison in found:
+        what, heading = f"the {NAMES[yardstick]}", f"{view.title}, {NAMES[yardstick]}"
         parts.append(f"{heading}: {comparison.ranking}\n{conclusion(comparison, what)}")
     return "\n\n".join(parts) + "\n"

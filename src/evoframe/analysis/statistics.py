@@ -40,6 +40,7 @@ class Group:
         sd: Their standard deviation, of a sample.
         median: Their median.
         quartiles: The first and the third.
+        mean_rank: The mean of their ranks among the values of all groups, 1 being the least.
         shapiro_p: Shapiro-Wilk's p: small where they are not normal; ``None`` where that cannot be judged.
     """
 
@@ -49,6 +50,7 @@ class Group:
     sd: float
     median: float
     quartiles: tuple[float, float]
+    mean_rank: float
     shapiro_p: float | None
 
 
@@ -147,7 +149,10 @@ def compare(
         for i, j in itertools.combinations(range(len(names)), 2)
     ]
     return Comparison(
-        groups=tuple(_group(name, array) for name, array in ordered.items()),
+        groups=tuple(
+            _group(name, array, rank)
+            for (name, array), rank in zip(ordered.items(), _mean_ranks(list(ordered.values())), strict=True)
+        ),
         correction=correction,
         alpha=alpha,
         h=h,
@@ -190,11 +195,18 @@ def _refuse(arrays: Mapping[str, Floats]) -> None:
             raise ValueError(f"{name}: expected one or more finite numbers")
 
 
-def _group(name: str, array: Floats) -> Group:
+def _mean_ranks(arrays: Sequence[Floats]) -> list[float]:
+    ranks = stats.rankdata(np.concatenate(arrays))
+    ends = np.cumsum([len(array) for array in arrays])
+    return [float(part.mean()) for part in np.split(ranks, ends[:-1])]
+
+
+def _group(name: str, array: Floats, mean_rank: float) -> Group:
     low, middle, high = np.quantile(array, [0.25, 0.5, 0.75])
     sd = float(np.std(array, ddof=1)) if len(array) > 1 else 0.0
     mean = math.fsum(array) / len(array)
-    return Group(name, len(array), mean, sd, float(middle), (float(low), float(high)), _shapiro(array))
+    quartiles = float(low), float(high)
+    return Group(name, len(array), mean, sd, float(middle), quartiles, mean_rank, _shapiro(array))
 
 
 def _shapiro(array: Floats) -> float | None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -17,7 +17,7 @@ from evoframe.study.gathered import gather, imported_rows
 from evoframe.study.plan import Study, read_study
 from evoframe.study.rows import Row
 
-__all__ = ["YARDSTICKS", "StudyData", "Yardstick", "load_study"]
+__all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "called", "load_study"]
 
 Yardstick: TypeAlias = Literal["score", "fitness"]
 
@@ -31,8 +31,7 @@ class StudyData:
 
     Attributes:
         label: What a person calls it.
-        keys: The keys of the grid. The last one is that whose values are compared; the others part the study
-            into panels.
+        keys: The keys of the grid. The last one is that whose values are compared.
         unit: Of the scores.
         planned: How many runs there shall be.
         rows: Of the finished ones, in the order of work.
@@ -62,25 +61,63 @@ class StudyData:
             ]
         )
 
-    @property
-    def panels(self) -> list[dict[str, str]]:
-        """The combinations of all keys but the last, in the order of work."""
-        found = {tuple(row.settings[key] for key in self.keys[:-1]): None for row in self.rows}
-        return [dict(zip(self.keys[:-1], values, strict=True)) for values in found]
+    def views(self, yardstick: Yardstick) -> list[View]:
+        """Return what is compared: the values of the last key, in a view for each combination of the others.
 
-    @cached_property
-    def compared(self) -> list[str]:
-        """The values of the last key, in the order of work."""
-        return list(dict.fromkeys(row.settings[self.keys[-1]] for row in self.rows))
+        Where there are several, one more view compares the best of each: those with the greatest mean on the
+        *yardstick*. Their names say where they come from, as in ``WM (n = 2)``.
+        """
+        found: dict[tuple[str, ...], dict[str, list[Row]]] = {}
+        for row in self.rows:
+            groups = found.setdefault(tuple(row.settings[key] for key in self.keys[:-1]), {})
+            groups.setdefault(called(row.settings[self.keys[-1]]), []).append(row)
+        titles = [_title(dict(zip(self.keys, values, strict=False))) for values in found]
+        views = [
+            View(title or self.label, _last(self.keys[-1]), groups)
+            for title, groups in zip(titles, found.values(), strict=True)
+        ]
+        return [*views, _best(views, yardstick)] if len(views) > 1 else views
 
-    def of(self, panel: dict[str, str]) -> dict[str, list[Row]]:
-        """Return the rows of a panel, by the value of the last key."""
-        inside = [row for row in self.rows if panel.items() <= row.settings.items()]
-        return {
-            value: [row for row in inside if row.settings[self.keys[-1]] == value]
-            for value in self.compared
-            if any(row.settings[self.keys[-1]] == value for row in inside)
-        }
+
+@attrs.frozen
+class View:
+    """Groups of runs that are compared.
+
+    Attributes:
+        title: What they have in common: ``n = 2``.
+        key: What distinguishes them: ``aggregator``.
+        groups: Name -> the runs of each.
+    """
+
+    title: str
+    key: str
+    groups: Mapping[str, Sequence[Row]] = attrs.field(repr=False)
+
+    def values(self, yardstick: Yardstick) -> dict[str, list[float]]:
+        """Return the final values of each group."""
+        return {name: [getattr(row, yardstick) for row in rows] for name, rows in self.groups.items()}
+
+
+def called(value: str) -> str:
+    """Return what a value of the grid is called in an article: an average is AM, as the paper writes it."""
+    return value.upper() if len(value) == 2 else value
+
+
+def _best(views: Sequence[View], yardstick: Yardstick) -> View:
+    best: dict[str, Sequence[Row]] = {}
+    for view in views:
+        values = view.values(yardstick)
+        name = max(values, key=lambda name: math.fsum(values[name]) / len(values[name]))
+        best[f"{name} ({view.title})"] = view.groups[name]
+    return View("best of each", views[0].key, best)
+
+
+def _title(settings: Mapping[str, str]) -> str:
+    return ", ".join(f"{_last(key)} = {value}" for key, value in settings.items())
+
+
+def _last(key: str) -> str:
+    return key.rsplit(".", 1)[-1]
 
 
 def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:

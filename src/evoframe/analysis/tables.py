@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import itertools
+from typing import TypeAlias
 
 import pandas as pd
 
-from evoframe.analysis.figures import final_values
 from evoframe.analysis.statistics import Comparison, Correction, compare
-from evoframe.analysis.study_data import YARDSTICKS, StudyData, Yardstick
+from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
 
 __all__ = ["comparisons", "pairs_table", "ranking_table", "summary_table"]
 
-Panel = dict[str, str]
-Compared = list[tuple[Panel, Yardstick, Comparison]]
+Compared: TypeAlias = list[tuple[View, Yardstick, Comparison]]
 
 
 def comparisons(data: StudyData, correction: Correction = "holm") -> Compared:
-    """Return the comparison of each panel on each yardstick, where it has two groups or more."""
-    found: Compared = []
-    for panel, yardstick in itertools.product(data.panels, YARDSTICKS):
-        values = final_values(data.of(panel), yardstick)
-        if len(values) > 1:
-            found.append((panel, yardstick, compare(values, correction)))
-    return found
+    """Return the comparison of each view on each yardstick, where it has two groups or more."""
+    return [
+        (view, yardstick, compare(view.values(yardstick), correction))
+        for yardstick in YARDSTICKS
+        for view in data.views(yardstick)
+        if len(view.groups) > 1
+    ]
 
 
 def summary_table(found: Compared) -> pd.DataFrame:
@@ -31,10 +29,11 @@ def summary_table(found: Compared) -> pd.DataFrame:
     return pd.DataFrame(
         [
             {
-                **panel,
+                "view": view.title,
                 "yardstick": yardstick,
                 "group": group.name,
                 "runs": group.n,
+                "mean rank": group.mean_rank,
                 "mean": group.mean,
                 "sd": group.sd,
                 "median": group.median,
@@ -43,7 +42,7 @@ def summary_table(found: Compared) -> pd.DataFrame:
                 "Shapiro-Wilk p": group.shapiro_p,
                 "letters": comparison.letters[group.name],
             }
-            for panel, yardstick, comparison in found
+            for view, yardstick, comparison in found
             for group in comparison.groups
         ]
     )
@@ -54,7 +53,7 @@ def pairs_table(found: Compared) -> pd.DataFrame:
     return pd.DataFrame(
         [
             {
-                **panel,
+                "view": view.title,
                 "yardstick": yardstick,
                 "first": pair.first,
                 "second": pair.second,
@@ -62,7 +61,7 @@ def pairs_table(found: Compared) -> pd.DataFrame:
                 "correction": comparison.correction,
                 "A12": pair.a12,
             }
-            for panel, yardstick, comparison in found
+            for view, yardstick, comparison in found
             for pair in comparison.pairs
         ]
     )
@@ -73,13 +72,13 @@ def ranking_table(found: Compared) -> pd.DataFrame:
     return pd.DataFrame(
         [
             {
-                **panel,
+                "view": view.title,
                 "yardstick": yardstick,
                 "Kruskal-Wallis H": comparison.h,
                 "p": comparison.p,
                 "epsilon squared": comparison.epsilon_squared,
                 "ranking": comparison.ranking,
             }
-            for panel, yardstick, comparison in found
+            for view, yardstick, comparison in found
         ]
     )
