@@ -94,18 +94,24 @@ def ranks(comparison: Comparison, title: str) -> Figure:
     """
     figure, axes = _figure(height=0.7 + 0.22 * len(comparison.groups))
     names = [group.name for group in comparison.groups]
-    p = pd.DataFrame(1.0, index=names, columns=names)
-    for pair in comparison.pairs:
-        p.loc[pair.first, pair.second] = p.loc[pair.second, pair.first] = pair.p
+    numbers = range(len(names))  # the picture would depend on the hashes of names
+    p = pd.DataFrame(
+        [[1.0 if i == j else comparison.pair(names[i], names[j]).p for j in numbers] for i in numbers]
+    )
     posthocs.critical_difference_diagram(
-        {group.name: group.mean_rank for group in comparison.groups},
+        {number: comparison.groups[number].mean_rank for number in numbers},
         p,
         ax=axes,
         alpha=comparison.alpha,
+        label_fmt_left="{label}",
+        label_fmt_right="{label}",
         label_props={"size": 7},
         text_h_margin=0.02 * max(1.0, np.ptp([group.mean_rank for group in comparison.groups])),
         color_palette=["black"] * len(names),
     )
+    for text in axes.texts:
+        group = comparison.groups[int(text.get_text())]
+        text.set_text(f"{group.name} ({group.mean_rank:.3g})")
     axes.set_title(f"{title}: mean rank", size=9)
     return figure
 

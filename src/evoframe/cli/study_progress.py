@@ -157,7 +157,7 @@ class StudyProgress:
                 "" if state.best is None else f"{state.best:.5g}",
                 "" if median is None else f"{median:.5g}",
             )
-        return Group(table, ProgressBar(total=whole, completed=worked), Text(self._tally()))
+        return Group(table, Text(self._tally()), ProgressBar(total=whole, completed=worked))
 
 
 def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:
