@@ -23,6 +23,7 @@ from evoframe.evaluation import Evaluator, Score
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer
 from evoframe.loading import Champion, Run, load_run
+from evoframe.notebook import load_study
 from evoframe.plugins import Plugins, suggestion
 from evoframe.population import Population
 from evoframe.processes import WorkerProcesses
@@ -116,6 +117,7 @@ __all__ = [
     "hookimpl",
     "load_config",
     "load_run",
+    "load_study",
     "resume",
     "run",
     "suggestion",

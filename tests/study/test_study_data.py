@@ -5,8 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from evoframe.analysis.study_data import load_study
-from evoframe.plugins import Plugins
+from evoframe import Plugins, load_study
 from evoframe.study.conduct import claim
 from evoframe.study.gathered import gather
 from evoframe.study.plan import Planned, Study
