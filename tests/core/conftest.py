@@ -6,18 +6,17 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import toy_box
 import toys
 
 from evoframe.config import RunConfig
-from evoframe.plugins import Plugins, Source
+from evoframe.plugins import Plugins
 from evoframe.resolve import load_config
 
 
 @pytest.fixture
 def toy_plugins() -> Plugins:
-    plugins = Plugins()
-    plugins.add(toys, Source("toy-box", "1.0", "toys"))
-    return plugins
+    return toy_box.installed()
 
 
 @pytest.fixture

@@ -7,19 +7,18 @@ from pathlib import Path
 
 import attrs
 import pytest
+import toy_box
 import toys
 from toy_study import STUDY
 
 from evoframe import run
-from evoframe.plugins import Plugins, Source
+from evoframe.plugins import Plugins
 from evoframe.study.plan import Planned, Study, read_study
 
 
 @pytest.fixture
 def toy_plugins() -> Plugins:
-    plugins = Plugins()
-    plugins.add(toys, Source("toy-box", "1.0", "toys"))
-    return plugins
+    return toy_box.installed()
 
 
 @pytest.fixture

@@ -1,0 +1,13 @@
+"""The toys as an installed plugin."""
+
+from __future__ import annotations
+
+import toys
+
+from evoframe.plugins import Plugins, Source
+
+
+def installed() -> Plugins:
+    plugins = Plugins()
+    plugins.add(toys, Source("toy-box", "1.0", "toys"))
+    return plugins
