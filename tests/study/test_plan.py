@@ -46,6 +46,11 @@ class TestCells:
         text = STUDY.replace('"collaboration.n" = [1, 2]', "collaboration.n = [1, 2]")
         assert seeds(toy_study(text=text)) == seeds(toy_study())
 
+    def test_are_those_that_are_asked_for_on_the_command_line(self, toy_study: Read) -> None:
+        for override in ("grid.collaboration.n=[2]", 'grid={"collaboration.n"=[2]}'):
+            assert toy_study(override).grid["collaboration.n"] == (2,)
+            assert len(toy_study(override).cells) == 2
+
     def test_count_their_pairs_as_a_run_does(self, toy_study: Read, tmp_path: Path) -> None:
         for cell in toy_study().cells:
             made = run(cell.config, out=tmp_path / cell.folder)

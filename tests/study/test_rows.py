@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from evoframe import InputError, load_run
-from evoframe.study.gathered import gather, import_rows
+from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study
 from evoframe.study.rows import Row, read_rows, row_of, write_rows
 
@@ -103,6 +103,21 @@ def test_rows_of_something_else_are_refused(
     with pytest.raises(InputError) as caught:
         import_rows(study, directory, [path])
     assert message in str(caught.value)
+
+
+def test_rows_of_cells_that_are_not_asked_for_now_are_kept(
+    made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
+) -> None:
+    study, directory, planned = made
+    kept(study, directory, planned)
+    there = tmp_path / "there"
+    there.mkdir()
+    import_rows(study, there, [directory / "rows.csv"])
+    fewer = toy_study("runs=1", "grid.collaboration.n=[2]")
+    assert [run.index for run in imported_rows(fewer, there)] == [0, 0]
+    write_rows([row_of(planned[2])], tmp_path / "rows.csv")
+    import_rows(fewer, there, [tmp_path / "rows.csv"])
+    assert len(imported_rows(study, there)) == 4
 
 
 def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:

@@ -81,7 +81,7 @@ def study(
     """Run a grid of configurations, each several times; go on where that was left.
 
     STUDY is a TOML file with a base (extends), the number of runs and a grid, or the name of a study that
-    comes with evoframe: paper, collaborators, small. Only what is missing is run, in an order that leaves a
+    comes with evoframe, such as paper or small. Only what is missing is run, in an order that leaves a
     partial study balanced. Seeds are derived: those of one configuration depend on no other. At the end,
     rows.csv has a row for each run, and curves.csv how it got there.
     """
@@ -89,7 +89,8 @@ def study(
     directory = out or Path("studies") / found.label
     if not dry_run:
         claim(found, directory)
-        import_rows(found, directory, tables)
+        if tables:
+            import_rows(found, directory, tables)
     elif directory.exists():
         refuse_another(found, directory)
     sitting = _Sitting(ctx, found, directory, survey(found, directory, _imported(found, directory)), retry)

@@ -95,10 +95,13 @@ def survey(study: Study, directory: Path, imported: Iterable[Path] = ()) -> dict
         InputError: One of them is damaged, or of another study.
     """
     elsewhere = set(imported)
-    return {
-        planned: Status("finished") if planned.directory in elsewhere else status(planned)
-        for planned in study.planned(directory)
-    }
+    try:
+        return {
+            planned: Status("finished") if planned.directory in elsewhere else status(planned)
+            for planned in study.planned(directory)
+        }
+    except InputError as error:
+        raise InputError(f"{error}; a run whose directory is removed is made again") from error
 
 
 def conduct(

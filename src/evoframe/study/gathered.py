@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from evoframe.errors import InputError
 from evoframe.study.plan import Planned, Study, shown
@@ -27,29 +28,46 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> None:
         InputError: A row is of no run of this study, or contradicts another of the same run; says which.
     """
     planned = list(study.planned(directory))
-    rows = imported_rows(study, directory)
+    kept = {_key(row): row for row in _kept(directory)}
     for path in paths:
         for row in read_rows(path):
-            run = _run_of(row, planned, path)
-            if run in rows and rows[run].champion != row.champion:
-                raise InputError(f"{path}: {run.label}: another champion than in the rows imported before")
-            rows[run] = row
+            run = _run_of(row, planned)
+            if run is None:
+                raise InputError(f"{path}: {_named(row)}: is no run of this study")
+            _refuse_another(row, run, path)
+            if kept.setdefault(_key(row), row).champion != row.champion:
+                raise InputError(f"{path}: {_named(row)}: another champion than in the rows imported before")
     folder = directory / IMPORTED
     folder.mkdir(exist_ok=True)
-    write_rows([rows[run] for run in planned if run in rows], folder / ROWS_FILE)
+    write_rows(list(kept.values()), folder / ROWS_FILE)
 
 
 def imported_rows(study: Study, directory: Path) -> dict[Planned, Row]:
-    """Return the rows that were imported, by the run that they are of.
+    """Return the rows that were imported, by the run that they are of; those of other cells wait.
 
     Raises:
-        InputError: They are damaged, or of no runs of this study.
+        InputError: They are damaged, or were made otherwise than this study makes them.
     """
+    planned, found = list(study.planned(directory)), {}
+    for row in _kept(directory):
+        run = _run_of(row, planned)
+        if run is not None:
+            _refuse_another(row, run, directory / IMPORTED / ROWS_FILE)
+            found[run] = row
+    return found
+
+
+def _kept(directory: Path) -> list[Row]:
     path = directory / IMPORTED / ROWS_FILE
-    if not path.is_file():
-        return {}
-    planned = list(study.planned(directory))
-    return {_run_of(row, planned, path): row for row in read_rows(path)}
+    return read_rows(path) if path.is_file() else []
+
+
+def _key(row: Row) -> tuple[Any, ...]:
+    return (*sorted(row.settings.items()), row.run)
+
+
+def _named(row: Row) -> str:
+    return ", ".join([*(f"{key}={value}" for key, value in row.settings.items()), f"run {row.run}"])
 
 
 def gather(study: Study, directory: Path, finished: Sequence[Planned]) -> list[Row]:
@@ -68,17 +86,17 @@ def _is_elsewhere(run: Planned, elsewhere: Mapping[Planned, Row]) -> bool:
     return run in elsewhere and not run.directory.is_dir()
 
 
-def _run_of(row: Row, planned: Iterable[Planned], path: Path) -> Planned:
-    """Return the run that a row is of."""
-    named = ", ".join(f"{key}={value}" for key, value in row.settings.items())
+def _run_of(row: Row, planned: Iterable[Planned]) -> Planned | None:
+    """Return the run that a row is of; ``None`` if it is not planned."""
     for run in planned:
         settings = {key: shown(value) for key, value in run.cell.settings}
         if run.index == row.run and settings == dict(row.settings):
-            break
-    else:
-        raise InputError(f"{path}: {named}, run {row.run}: is no run of this study")
+            return run
+    return None
+
+
+def _refuse_another(row: Row, run: Planned, path: Path) -> None:
     if row.seed != run.seed or row.configuration != digest(run):
         raise InputError(
-            f"{path}: {named}, run {row.run}: was made with another configuration or seed than this study has"
+            f"{path}: {_named(row)}: was made with another configuration or seed than this study has"
         )
-    return run
