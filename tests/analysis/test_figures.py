@@ -26,11 +26,10 @@ def data() -> StudyData:
 @pytest.mark.parametrize("yardstick", YARDSTICKS)
 def test_curves_are_the_means_of_runs_within_their_bands(data: StudyData, yardstick: Yardstick) -> None:
     [view] = data.views(yardstick)
-    [axes] = curves(view, yardstick, data.unit).axes
+    figure = curves(view, yardstick, data.unit)
+    [axes], [legend] = figure.axes, figure.legends
     assert axes.get_ylabel() == f"{NAMES[yardstick]} (mm)"
     assert axes.get_title() == view.title == "n = 2"
-    legend = axes.get_legend()
-    assert legend is not None
     assert [text.get_text() for text in legend.get_texts()] == ["AM: 30", "WM: 30", "GM: 30", "HM: 30"]
     for line, band, rows in zip(axes.lines, axes.collections, view.groups.values(), strict=True):
         drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows])

@@ -38,7 +38,7 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
         yardstick: What is drawn.
         unit: Of scores; metres are shown as millimetres.
     """
-    figure, axes = _figure()
+    figure, axes = _figure(height=3.0)
     for number, (name, rows) in enumerate(view.groups.items()):
         drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * _factor(unit)
         generations = np.arange(drawn.shape[1])
@@ -48,7 +48,15 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
             axes.fill_between(generations, *_band(drawn), color=style["color"], alpha=0.18, lw=0)
     axes.set(xlabel="generation", ylabel=_label(yardstick, unit))
     axes.set_title(view.title, size=9)
-    axes.legend(title=f"{view.key}: runs", frameon=False, loc="lower right", fontsize=7, title_fontsize=7)
+    wide = max(map(len, view.groups)) > 4  # a column has room for four short names, or two long ones
+    figure.legend(
+        title=f"{view.key}: runs",
+        frameon=False,
+        loc="outside lower center",
+        ncols=2 if wide else 4,
+        fontsize=7,
+        title_fontsize=7,
+    )
     axes.margins(x=0)
     return figure
 
@@ -80,7 +88,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
         axes.plot(beside, values, "o", color=COLOURS[number % 8], ms=3, mew=0, alpha=0.6)
     if comparison is not None:
         _letter(axes, comparison, list(groups))
-    labels = [f"{name}\n{len(values)} runs" for name, values in groups.items()]
+    labels = [f"{name}\n{len(values)} runs".replace(" (", "\n(") for name, values in groups.items()]
     axes.set_xticks(places, labels)
     axes.set(xlabel=view.key, ylabel=_label(yardstick, unit), xlim=(0.5, len(groups) + 0.5))
     axes.set_title(view.title, size=9, pad=12)  # the letters are below it
@@ -111,7 +119,7 @@ def ranks(comparison: Comparison, title: str) -> Figure:
     )
     for text in axes.texts:
         group = comparison.groups[int(text.get_text())]
-        text.set_text(f"{group.name} ({group.mean_rank:.3g})")
+        text.set_text(f"{group.name}: {group.mean_rank:.3g}")
     axes.set_title(f"{title}: mean rank", size=9)
     return figure
 
