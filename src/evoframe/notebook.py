@@ -22,8 +22,8 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
 
     Raises:
         ModuleNotFoundError: The extra ``report`` is not installed.
-        ConfigurationError: It is no study, or cannot be read with these plugins.
-        InputError: One of its runs is damaged.
+        ConfigurationError: It cannot be read with these plugins.
+        InputError: It is no study's directory, or one of its runs is damaged.
     """
     from evoframe.analysis import study_data  # noqa: PLC0415 - takes a second, and an extra
 

@@ -65,7 +65,7 @@ def test_of_a_study_that_is_not_finished_says_so(
 @pytest.mark.parametrize(
     ("directory", "message"),
     [
-        ("nowhere", "nowhere/study.toml: cannot be read: No such file or directory"),
+        ("nowhere", "nowhere: is no study's directory: there is no study.toml"),
         ("empty", "empty: no run of this study is finished, so there is nothing to report"),
     ],
 )

@@ -64,6 +64,9 @@ def test_a_finished_run_is_said_to_be_finished(evoframe: Evoframe, toy: list[str
     again = evoframe("-q", "resume", *toy, "here")
     assert (again.returncode, again.stderr) == (0, "here: is finished\n")
     assert {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()} == before
+    refused = evoframe("resume", *toy, "here", "--set", "run.generations=9")
+    assert refused.returncode == 2
+    assert "not that of the run:\n  run.generations: 4 then, 9 now" in refused.stderr
 
 
 @pytest.mark.parametrize(

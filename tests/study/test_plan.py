@@ -121,6 +121,8 @@ def test_mistakes_are_named(toy_study: Read, change: tuple[str, str], message: s
 def test_a_study_that_is_nowhere_is_said_to_be(toy_plugins: Any) -> None:
     with pytest.raises(ConfigurationError, match=r"nowhere\.toml: cannot be read"):
         read_study("nowhere.toml", (), toy_plugins)
+    with pytest.raises(ConfigurationError, match=r"there is no study 'papre'; did you mean 'paper'\?"):
+        read_study("papre", (), toy_plugins)
 
 
 class TestBuiltIn:

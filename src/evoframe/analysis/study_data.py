@@ -11,6 +11,7 @@ import attrs
 import pandas as pd
 
 from evoframe.discovery import discover
+from evoframe.errors import InputError
 from evoframe.plugins import Plugins
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
@@ -128,10 +129,12 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         plugins: The plugins that its configurations name; by default those that are installed.
 
     Raises:
-        ConfigurationError: It is no study, or cannot be read with these plugins.
-        InputError: One of its runs is damaged.
+        ConfigurationError: It cannot be read with these plugins.
+        InputError: It is no study's directory, or one of its runs is damaged.
     """
     directory = Path(directory)
+    if not (directory / STUDY_FILE).is_file():
+        raise InputError(f"{directory}: is no study's directory: there is no {STUDY_FILE}")
     study = read_study(directory / STUDY_FILE, (), plugins or discover())
     elsewhere = [planned.directory for planned in imported_rows(study, directory)]
     statuses = survey(study, directory, elsewhere)

@@ -50,6 +50,8 @@ def resume(
     plugins = plugins_of(ctx)
     settings: list[str | Layer] = [*overrides, *workers]
     if is_finished(directory):
+        if settings:
+            configuration_of(directory, settings, plugins)  # refuses what would have been another run
         click.echo(f"{directory}: is finished", err=True)
         if load_run(directory).verification is None:
             show_end(ctx, configuration_of(directory, settings, plugins), directory)

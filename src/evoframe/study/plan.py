@@ -16,7 +16,7 @@ import attrs
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError
 from evoframe.layers import Layer, Layers, Tree, layer_of, read_layers
-from evoframe.plugins import Plugins
+from evoframe.plugins import Plugins, suggestion
 from evoframe.resolve import resolved
 from evoframe.structuring import found
 
@@ -177,6 +177,12 @@ def _file_of(source: str | Path) -> str | Path:
     if source in study_names():
         with_path: Any = files("evoframe").joinpath("studies", f"{source}.toml")
         return str(with_path)
+    if not str(source).endswith(".toml") and not Path(source).exists():
+        known = study_names()
+        raise ConfigurationError(
+            f"there is no study '{source}'{suggestion(str(source), known, 'studies')}; "
+            "a file needs the ending .toml"
+        )
     return source
 
 
