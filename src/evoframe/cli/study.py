@@ -93,15 +93,12 @@ def study(
             import_rows(found, directory, tables)
     elif directory.exists():
         refuse_another(found, directory)
-    sitting = _Sitting(ctx, found, directory, survey(found, directory, _imported(found, directory)), retry)
+    imported = [planned.directory for planned in imported_rows(found, directory, tables)]
+    sitting = _Sitting(ctx, found, directory, survey(found, directory, imported), retry)
     if dry_run:
         sitting.tell()
         return
     sitting.work(workers or available_cores())
-
-
-def _imported(found: Study, directory: Path) -> list[Path]:
-    return [planned.directory for planned in imported_rows(found, directory)]
 
 
 @attrs.frozen
@@ -159,9 +156,8 @@ class _Sitting:
 
     def _end(self, code: int) -> None:
         """Show what there is, and leave with an exit code that says whether that is all."""
-        after = attrs.evolve(
-            self, statuses=survey(self.study, self.directory, _imported(self.study, self.directory))
-        )
+        imported = [planned.directory for planned in imported_rows(self.study, self.directory)]
+        after = attrs.evolve(self, statuses=survey(self.study, self.directory, imported))
         rows = self._rows(after.finished)
         write_rows(list(rows.values()), self.directory / ROWS_FILE)
         if is_quiet(self.ctx):

@@ -27,6 +27,14 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> None:
     Raises:
         InputError: A row is of no run of this study, or contradicts another of the same run; says which.
     """
+    rows = _joined(study, directory, paths)
+    folder = directory / IMPORTED
+    folder.mkdir(exist_ok=True)
+    write_rows(rows, folder / ROWS_FILE)
+
+
+def _joined(study: Study, directory: Path, paths: Iterable[Path]) -> list[Row]:
+    """Return the rows that were imported before, and those of more tables."""
     planned = list(study.planned(directory))
     kept = {_key(row): row for row in _kept(directory)}
     for path in paths:
@@ -37,19 +45,22 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> None:
             _refuse_another(row, run, path)
             if kept.setdefault(_key(row), row).champion != row.champion:
                 raise InputError(f"{path}: {_named(row)}: another champion than in the rows imported before")
-    folder = directory / IMPORTED
-    folder.mkdir(exist_ok=True)
-    write_rows(list(kept.values()), folder / ROWS_FILE)
+    return list(kept.values())
 
 
-def imported_rows(study: Study, directory: Path) -> dict[Planned, Row]:
+def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> dict[Planned, Row]:
     """Return the rows that were imported, by the run that they are of; those of other cells wait.
+
+    Args:
+        study: The study.
+        directory: Its directory.
+        more: Tables that could be imported too.
 
     Raises:
         InputError: They are damaged, or were made otherwise than this study makes them.
     """
     planned, found = list(study.planned(directory)), {}
-    for row in _kept(directory):
+    for row in _joined(study, directory, more):
         run = _run_of(row, planned)
         if run is not None:
             _refuse_another(row, run, directory / IMPORTED / ROWS_FILE)
