@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Generic, TypeVar
@@ -146,8 +147,10 @@ class RunConfig:
         }
 
     def deciding(self) -> Tree:
-        """Return the tables on which the result depends: all but the executor."""
-        return {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
+        """Return the tables on which the result depends, all but the executor, as JSON values."""
+        kept = {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
+        deciding: Tree = json.loads(json.dumps(kept))  # tuples are read back as lists
+        return deciding
 
     def simulation(self) -> Tree:
         """Return the tables that say how a design is simulated and scored."""

@@ -136,16 +136,11 @@ def configuration_of(directory: Path, overrides: Sequence[str | Layer], plugins:
     if has_begun(directory):
         began: Mapping[str, Any] = load_run(directory).configuration
     else:
-        began = _as_saved(load_config(path, plugins=plugins))
-    others = differences(began, _as_saved(config))
+        began = load_config(path, plugins=plugins).deciding()
+    others = differences(began, config.deciding())
     if others:
         raise ConfigurationError(_listed(f"{directory}: the configuration is not that of the run", others))
     return config
-
-
-def _as_saved(config: RunConfig) -> Mapping[str, Any]:
-    tables: Mapping[str, Any] = json.loads(json.dumps(config.deciding()))
-    return tables
 
 
 def _changes(directory: Path, config: RunConfig, *, allowed: bool) -> list[str]:

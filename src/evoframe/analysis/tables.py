@@ -68,7 +68,7 @@ def pairs_table(found: Compared) -> pd.DataFrame:
 
 
 def ranking_table(found: Compared) -> pd.DataFrame:
-    """Return a line for each panel and yardstick: Kruskal-Wallis, and the ranking in the paper's notation."""
+    """Return a line for each view and yardstick: Kruskal-Wallis, and the ranking in the paper's notation."""
     return pd.DataFrame(
         [
             {

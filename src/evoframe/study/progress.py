@@ -73,8 +73,7 @@ def _cause(path: Path) -> str:
 
 
 def _refuse_another(planned: Planned, configuration: object) -> None:
-    expected = json.loads(json.dumps(planned.deciding()))
-    if configuration != expected:
+    if configuration != planned.deciding():
         raise InputError(
             f"{planned.directory}: is a run of another study: its configuration is not that of "
             f"'{planned.label}'; choose another directory with --out"
