@@ -10,6 +10,7 @@ from evoframe.coevolution import Coevolution
 from evoframe.config import Chosen, PopulationConfig, RunConfig, RunSettings
 from evoframe.cores import available_cores
 from evoframe.discovery import discover
+from evoframe.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
 from evoframe.errors import (
     ConfigurationError,
     EvoframeError,
@@ -83,10 +84,14 @@ __all__ = [
     "ExecutorRun",
     "Export",
     "Finding",
+    "Geometry",
+    "GeometryPart",
     "InputError",
     "Layer",
     "Member",
     "Network",
+    "NetworkGraph",
+    "NetworkLink",
     "Objective",
     "Outcome",
     "Pair",

@@ -85,6 +85,9 @@ class Encoder(Protocol):
     """Decodes a network into its part of a design.
 
     Laws: roles, shapes and dtypes as declared; pure; total: every network gives a design.
+
+    It may offer ``input_names`` and ``output_names``, each a tuple of words: what a figure of a network
+    writes beside its nodes.
     """
 
     @property
@@ -149,7 +152,11 @@ class EvolverRun(Protocol):
 
 @runtime_checkable
 class Evolver(Protocol):
-    """Options of an evolutionary algorithm that works on networks."""
+    """Options of an evolutionary algorithm that works on networks.
+
+    It may offer ``graph(genome) -> NetworkGraph``: what a figure draws of a genome, given as
+    :meth:`EvolverRun.dump` gives it, but perhaps from a file of anyone: a ``ValueError`` says what is wrong.
+    """
 
     def check(self, size: int) -> None:
         """Refuse a population size before anything runs.
@@ -179,6 +186,13 @@ class Simulator(Protocol):
       it writes. A format is named by the ending of its files; the same design gives the same bytes.
     - ``variants(design, record) -> Sequence[Variant]``: what ``evoframe verify`` simulates beside the
       unchanged design. The same arguments give the same variants.
+    - ``geometry(design, frames) -> Geometry``: what figures and the page of a report draw. One frame is the
+      design at rest; with more it is simulated, and looked at as often at most, from the start to the end or
+      to the divergence.
+    - ``random_controller(design, rng) -> Design``: the same body with a controller that is drawn at random,
+      for ``evoframe robustness``. The same state of *rng* gives bodies of the same shape the same controller,
+      whatever they are made of.
+    - ``published() -> [(label, design), ...]``: bodies of others, for ``evoframe robustness --published``.
     """
 
     @property
