@@ -9,7 +9,7 @@ import pytest
 from contracts import name_of
 from numpy.typing import NDArray
 
-from evoframe import ConfigurationError, Design, Export, Outcome, Record, Variant
+from evoframe import ConfigurationError, Design, Export, Geometry, GeometryPart, Outcome, Record, Variant
 from evoframe.testing import SimulatorContract
 
 ACCEPTED = "test_a_record_of_its_tracks_is_accepted"
@@ -33,6 +33,8 @@ KEYS = "test_keys_are_bytes_and_equal_for_equal_designs"
 EQUAL_KEYS = "test_equal_keys_mean_equal_outcomes"
 VARIANTS = "test_variants_are_scored_by_the_same_objective"
 SAME_VARIANTS = "test_the_same_design_has_the_same_variants"
+GEOMETRY = "test_a_geometry_has_frames_of_meshes"
+FIRST_FRAME = "test_one_frame_is_the_first_of_many"
 FORMATS = "test_each_format_gives_the_same_bytes_twice"
 
 STEPS, STEP = 12, 0.01
@@ -124,7 +126,7 @@ class TestSpringWithinASelection(SpringContract):
 
 @attrs.frozen
 class Offering(Spring):
-    """A sound simulator with files and variants, and the base of those that are not."""
+    """A sound simulator with files, variants and pictures, and the base of those that are not."""
 
     strength: float = 1.0
     formats: ClassVar[tuple[str, ...]] = ("txt",)
@@ -141,6 +143,14 @@ class Offering(Spring):
     def drawn(self, design: Design) -> Sequence[Design]:
         draws = np.random.default_rng(1).uniform(0.99, 1.01, 3)
         return [design.with_role("spring", design.roles["spring"] * draw) for draw in draws]
+
+    def geometry(self, design: Design, frames: int) -> Geometry:
+        positions, _ = self.positions(design)
+        heights = positions[np.isfinite(positions[:, 2])][:frames]
+        square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float64)
+        corners = np.array([[0, 1, 2, 3]])
+        part = GeometryPart("weight", "#d55e00", 1.0, heights[:, None] + square, corners)
+        return Geometry(np.arange(float(len(heights))), (part,), {"weight": heights})
 
 
 class TestOffering(SpringContract):
@@ -184,6 +194,74 @@ class VariantOfAnotherTrack(Offering):
 class VariantThatIsRefused(Offering):
     def variants(self, design: Design, record: Record) -> Sequence[Any]:
         return [Variant("later", self, design, attrs.evolve(record, until=1e9))]
+
+
+class Redrawn(Offering):
+    """Draws as `Offering` does, but for one thing."""
+
+    def geometry(self, design: Design, frames: int) -> Geometry:
+        return self.changed(super().geometry(design, frames))
+
+    def changed(self, geometry: Geometry) -> Geometry:
+        parts = tuple(self.part(part) for part in geometry.parts)
+        return attrs.evolve(geometry, parts=parts)
+
+    def part(self, part: GeometryPart) -> GeometryPart:
+        return part
+
+
+class DrawsNothing(Redrawn):
+    def changed(self, geometry: Geometry) -> Geometry:
+        return attrs.evolve(geometry, parts=())
+
+
+class DrawsAllTheTime(Offering):
+    def geometry(self, design: Design, frames: int) -> Geometry:
+        return super().geometry(design, 12)
+
+
+class DrawsFromTheFirstStep(Redrawn):
+    def changed(self, geometry: Geometry) -> Geometry:
+        return attrs.evolve(geometry, times=geometry.times + STEP)
+
+
+class DrawsAnUnknownTrack(Redrawn):
+    def changed(self, geometry: Geometry) -> Geometry:
+        return attrs.evolve(geometry, tracks={"wheel": geometry.tracks["weight"]})
+
+
+class DrawsNamedColours(Redrawn):
+    def part(self, part: GeometryPart) -> GeometryPart:
+        return attrs.evolve(part, colour="red")
+
+
+class DrawsInvisibly(Redrawn):
+    def part(self, part: GeometryPart) -> GeometryPart:
+        return attrs.evolve(part, opacity=0.0)
+
+
+class DrawsWithoutACorner(Redrawn):
+    def part(self, part: GeometryPart) -> GeometryPart:
+        return attrs.evolve(part, vertices=part.vertices[:, :3])
+
+
+class DrawsTriangles(Redrawn):
+    def part(self, part: GeometryPart) -> GeometryPart:
+        return attrs.evolve(part, faces=part.faces[:, :3])
+
+
+class DrawsNowhere(Redrawn):
+    def part(self, part: GeometryPart) -> GeometryPart:
+        return attrs.evolve(part, vertices=part.vertices * np.nan)
+
+
+class DrawsTheEndWhereOneIsAsked(Offering):
+    def geometry(self, design: Design, frames: int) -> Geometry:
+        geometry = super().geometry(design, frames)
+        if frames > 1:
+            return geometry
+        [part] = geometry.parts
+        return attrs.evolve(geometry, parts=(attrs.evolve(part, vertices=part.vertices + 1.0),))
 
 
 class ExportsText(Offering):
@@ -389,6 +467,16 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (VariesNothing(), VARIANTS),
         (VariantOfAnotherTrack(), VARIANTS),
         (DrawsAnew(), SAME_VARIANTS),
+        (DrawsNothing(), GEOMETRY),
+        (DrawsAllTheTime(), GEOMETRY),
+        (DrawsFromTheFirstStep(), GEOMETRY),
+        (DrawsAnUnknownTrack(), GEOMETRY),
+        (DrawsNamedColours(), GEOMETRY),
+        (DrawsInvisibly(), GEOMETRY),
+        (DrawsWithoutACorner(), GEOMETRY),
+        (DrawsTriangles(), GEOMETRY),
+        (DrawsNowhere(), GEOMETRY),
+        (DrawsTheEndWhereOneIsAsked(), FIRST_FRAME),
         (ExportsText(), FORMATS),
         (ExportsNothing(), FORMATS),
         (ExportsTheCall(), FORMATS),

@@ -21,12 +21,14 @@ from evoframe import (
     ConfigurationError,
     Design,
     Export,
+    Geometry,
     InputError,
     Outcome,
     Record,
     Variant,
 )
 from evoframe_simulators.bodies import check_codes, check_design, read_bodies
+from evoframe_simulators.geometry import geometry
 from evoframe_simulators.materials import PaletteMaterial, check_palette, materials_of
 from evoframe_simulators.models import (
     acting_codes,
@@ -202,6 +204,15 @@ class Vox:
             return variants(self, design, record)
         except ValueError as error:  # the solver's words for what cells hold
             raise InputError(without_number(error)) from error
+
+    def geometry(self, design: Design, frames: int) -> Geometry:
+        """Return what is drawn of a body (see ``evoframe_simulators.geometry``).
+
+        Raises:
+            InputError: The design is no body with a controller, or has no voxel.
+            ValueError: *frames* is not positive.
+        """
+        return geometry(self, design, frames)
 
     def read(self, path: Path) -> list[tuple[str, Design]]:
         """Return the bodies of an ``.npz`` or ``.vxa`` file with their labels.

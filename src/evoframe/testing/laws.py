@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -12,12 +13,14 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import SearchStrategy
 
+from evoframe.drawings import GeometryPart
 from evoframe.errors import ConfigurationError
 from evoframe.protocols import Network
 from evoframe.values import Outcome
 
 __all__ = [
     "accepted",
+    "assert_is_mesh",
     "at_most",
     "for_all",
     "global_random_state_untouched",
@@ -119,3 +122,19 @@ def random_network(inputs: int, outputs: int, seed: int, scale: float) -> Networ
         return scale * np.sin(points @ weights + bias)
 
     return network
+
+
+def assert_is_mesh(part: GeometryPart, frames: int) -> None:
+    """Assert that a part of a geometry can be drawn: it has faces, and all their corners at each time."""
+    assert part.name.strip(), "a part needs a name"
+    assert re.fullmatch("#[0-9a-fA-F]{6}", part.colour), f"'{part.colour}' is no colour like #0072b2"
+    assert 0.0 < part.opacity <= 1.0
+    count = part.vertices.shape[1]
+    assert part.vertices.shape == (frames, count, 3)
+    assert np.isfinite(part.vertices).all()
+    assert part.faces.dtype == np.int64
+    assert part.faces.ndim == 2
+    assert part.faces.shape[1] == 4
+    assert len(part.faces) > 0, f"there is nothing to see of {part.name}"
+    assert part.faces.min() >= 0
+    assert part.faces.max() < count

@@ -10,11 +10,12 @@ import attrs
 import numpy as np
 import pytest
 
+from evoframe.drawings import Geometry, can_be_drawn
 from evoframe.errors import ConfigurationError
 from evoframe.exporting import export_design, formats_of
 from evoframe.protocols import Simulator
 from evoframe.testing.components import ComponentContract
-from evoframe.testing.laws import same_arrays, same_outcome
+from evoframe.testing.laws import assert_is_mesh, same_arrays, same_outcome
 from evoframe.values import Design, Export, Outcome, Record, Variant
 from evoframe.verification import UNCHANGED, can_verify
 
@@ -229,6 +230,33 @@ class SimulatorContract(ComponentContract[Simulator]):
                 assert first.data, "an export without any bytes"
                 assert all(isinstance(entry, str) and entry.strip() for entry in first.left_out)
                 assert first == second
+
+    def test_a_geometry_has_frames_of_meshes(self) -> None:
+        """As many as asked for at most, from rest on; every face has corners, every part is to be seen."""
+        asked = [(frames, geometry) for frames in (1, 2, 7) for geometry in self._geometries(frames)]
+        for frames, geometry in asked:
+            assert 1 <= len(geometry.times) <= frames
+            assert geometry.times[0] == 0.0
+            assert (np.diff(geometry.times) > 0).all()
+            assert geometry.parts
+            for part in geometry.parts:
+                assert_is_mesh(part, len(geometry.times))
+            for name, track in geometry.tracks.items():
+                assert name in self.component.tracks
+                assert track.shape == (len(geometry.times), 3)
+                assert np.isfinite(track).all()
+
+    def test_one_frame_is_the_first_of_many(self) -> None:
+        """To the last bit: what moves starts from what stands still."""
+        for one, many in zip(self._geometries(1), self._geometries(5), strict=True):
+            for part, moving in zip(one.parts, many.parts, strict=True):
+                assert np.array_equal(part.vertices[0], moving.vertices[0])
+                assert np.array_equal(part.faces, moving.faces)
+
+    def _geometries(self, frames: int) -> list[Geometry]:
+        if not can_be_drawn(self.component):
+            return []
+        return [self.component.geometry(design, frames) for design in self.designs()]
 
     def _variants(self, design: Design) -> Sequence[Variant]:
         return self.component.variants(design, self.record()) if can_verify(self.component) else []
