@@ -6,14 +6,14 @@ BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
 SOURCES := pyproject.toml setup.py extensions.py $(wildcard lib*/*.c lib*/*.h lib*/*.py lib*/include/*.h)
 
-.PHONY: run test lint types imports unit sanitize fuzz clean
+.PHONY: run test lint types imports unit browser sanitize fuzz clean
 
 ## run: the published experiment
 run: $(VENV)/installed
 	$(BIN)/evoframe run
 
 ## test: everything that CI checks
-test: lint types imports unit sanitize fuzz
+test: lint types imports unit browser sanitize fuzz
 
 ## lint: style of the Python code
 lint: $(VENV)/developing
@@ -31,6 +31,10 @@ imports: $(VENV)/developing
 ## unit: the tests
 unit: $(VENV)/developing
 	$(BIN)/python -m pytest
+
+## browser: the pages of reports, in Chromium
+browser: $(VENV)/developing
+	PYTHON=$(BIN)/python tests/browser/browser.sh
 
 ## sanitize: the C libraries and their tests under the address and undefined-behaviour sanitizers
 sanitize: $(VENV)/developing

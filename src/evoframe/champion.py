@@ -22,6 +22,7 @@ __all__ = [
     "champion_from_json",
     "design_from_json",
     "design_to_json",
+    "genomes_from_json",
     "parsed_json",
     "read_champion",
 ]
@@ -100,6 +101,19 @@ def champion_from_json(text: str) -> tuple[Design, dict[str, Any], float]:
     except (KeyError, OverflowError, TypeError, ValueError) as error:
         raise ValueError(f"design: not as evoframe writes it: {error}") from error
     return design, document["simulation"], document["score"]
+
+
+def genomes_from_json(text: str) -> dict[str, Any]:
+    """Return the genomes of a champion, population -> JSON of its evolver.
+
+    Raises:
+        ValueError: The text is not JSON, or no champion with genomes.
+    """
+    document = parsed_json(text)
+    genomes = document.get("genomes") if isinstance(document, dict) else None
+    if not isinstance(genomes, dict):
+        raise ValueError(f"genomes: expected a table, found {genomes!r}")  # noqa: TRY004 - it is a bad document
+    return genomes
 
 
 def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:

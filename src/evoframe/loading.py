@@ -12,7 +12,7 @@ from typing import Any
 
 import attrs
 
-from evoframe.champion import LARGEST_DOCUMENT, champion_from_json, parsed_json
+from evoframe.champion import LARGEST_DOCUMENT, champion_from_json, genomes_from_json, parsed_json
 from evoframe.checksums import CHAINED, SINGLE, Checksums
 from evoframe.config import is_role
 from evoframe.errors import InputError
@@ -32,11 +32,13 @@ class Champion:
         score: What the objective gave; a displacement in metres with all built-in objectives.
         design: Body and controller.
         simulation: The tables ``simulator`` and ``objective`` that it was simulated with.
+        genomes: Population -> its genome, as its evolver dumps it.
     """
 
     score: float
     design: Design
     simulation: dict[str, Any]
+    genomes: dict[str, Any] = attrs.field(repr=False)
 
 
 @attrs.frozen
@@ -137,9 +139,10 @@ class Run:
             raise InputError(f"{self._database}: has no pair with a score yet")
         try:
             design, simulation, score = champion_from_json(document)
+            genomes = genomes_from_json(document)
         except ValueError as error:
             raise InputError(f"{self._database}: best_pairs: {error}") from error
-        return Champion(score, design, simulation)
+        return Champion(score, design, simulation, genomes)
 
     @property
     def champion_document(self) -> str | None:

@@ -12,7 +12,7 @@ from evoframe._version import __version__
 from evoframe.config import RunConfig
 from evoframe.layers import Tree
 
-__all__ = ["differences", "provenance"]
+__all__ = ["differences", "leaves", "provenance"]
 
 
 def provenance(config: RunConfig) -> Tree:
@@ -35,7 +35,7 @@ def provenance(config: RunConfig) -> Tree:
 
 def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     """Return a line for each value of two trees of tables that is not the same: its dotted key, then, now."""
-    before, after = dict(_leaves(then)), dict(_leaves(now))
+    before, after = dict(leaves(then)), dict(leaves(now))
     keys = [*before, *(key for key in after if key not in before)]
     missing = "nothing"
     return [
@@ -45,9 +45,10 @@ def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _leaves(tree: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
+def leaves(tree: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
+    """Return the dotted key and the value of each leaf of a tree of tables."""
     if isinstance(tree, Mapping) and (tree or not path):
         for key, value in tree.items():
-            yield from _leaves(value, (*path, str(key)))
+            yield from leaves(value, (*path, str(key)))
     else:
         yield ".".join(path), tree

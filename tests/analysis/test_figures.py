@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from evoframe.analysis.figures import NAMES, curves, finals, ranks
+from evoframe.analysis.figures import curves, finals, ranks
 from evoframe.analysis.statistics import compare
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, Yardstick
+from evoframe.analysis.units import NAMES
 from evoframe.study.rows import read_rows
 
 ROWS = Path(__file__).parents[2] / "docs" / "results" / "paper" / "rows.csv"

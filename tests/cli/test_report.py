@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import toys
-from processes import Evoframe, python
+from processes import Evoframe, python, started, told
 from toy_study import STUDY
 
 NAMES = [
@@ -37,7 +37,7 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     written = contents(tmp_path / "s" / "report")
     figures = {f"{name}.{ending}" for name in NAMES for ending in ("pdf", "svg", "png")}
     tables = {f"{name}.{ending}" for name in ("summary", "pairs", "ranking") for ending in ("csv", "tex")}
-    assert set(written) == {*figures, *tables, "conclusions.txt"}
+    assert set(written) == {*figures, *tables, "conclusions.txt", "report.html"}
     assert written["curves-score-n-1.pdf"].startswith(b"%PDF")
     assert written["curves-score-n-1.png"].startswith(b"\x89PNG")
     assert b"<svg" in written["curves-score-n-1.svg"]
@@ -65,7 +65,10 @@ def test_of_a_study_that_is_not_finished_says_so(
 @pytest.mark.parametrize(
     ("directory", "message"),
     [
-        ("nowhere", "nowhere: is no study's directory: there is no study.toml"),
+        (
+            "nowhere",
+            "nowhere: is no directory of a run or a study: there is no config.toml and no study.toml",
+        ),
         ("empty", "empty: no run of this study is finished, so there is nothing to report"),
     ],
 )
@@ -77,6 +80,64 @@ def test_where_there_is_nothing_to_report_it_says_so(
     refused = evoframe("report", *study[:2], directory)
     assert refused.returncode == 2
     assert f"Error: {message}" in refused.stderr
+
+
+def test_a_run_has_a_report_too(evoframe: Evoframe, tmp_path: Path) -> None:
+    made = evoframe("run", "quick", "--out", "r")
+    assert made.returncode == 0, made.stderr
+    shown = evoframe("report", "r")
+    assert shown.returncode == 0, shown.stderr
+    written = contents(tmp_path / "r" / "report")
+    figures = ("curves", "champion-body", "champion-network-morphology", "champion-network-controller")
+    assert set(written) == {
+        *(f"{name}.{ending}" for name in figures for ending in ("pdf", "svg", "png")),
+        *("summary.csv", "summary.tex", "report.html"),
+    }
+    assert shown.stdout.startswith("r: best pair ")
+    assert "10 turns, finished; 224 pairs, 102 of them simulated" in shown.stdout
+    summary = {
+        row["figure"]: row["value (m)"]
+        for row in csv.DictReader(written["summary.csv"].decode().splitlines())
+    }
+    assert float(summary["best pair"]) >= float(summary["pair of the fittest"])
+    assert evoframe("report", "r").returncode == 0
+    assert contents(tmp_path / "r" / "report") == written
+
+
+def test_a_run_that_goes_on_is_reported_as_it_is(evoframe: Evoframe, tmp_path: Path) -> None:
+    with started(tmp_path, "-v", "run", "quick", "--set", "run.generations=1000000", "--out", "r") as process:
+        told(process, "turn ")
+        shown = evoframe("report", "r")
+    assert shown.returncode == 0, shown.stderr
+    assert "not finished yet" in shown.stdout
+
+
+def test_what_its_plugins_do_not_draw_is_left_out_and_said(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    plugin = ("-p", toys.__file__)
+    assert evoframe("run", *plugin, "toy.toml", "--out", "r").returncode == 0
+    assert evoframe("report", *plugin, "r").returncode == 0
+    written = contents(tmp_path / "r" / "report")
+    assert set(written) == {
+        "curves.pdf",
+        "curves.svg",
+        "curves.png",
+        "summary.csv",
+        "summary.tex",
+        "report.html",
+    }
+    assert b"Its simulator does not say what its designs look like." in written["report.html"]
+
+
+def test_several_reports_are_written_each_in_its_place(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    plugin = ("-p", toys.__file__)
+    for name in ("a", "b"):
+        assert evoframe("run", *plugin, "toy.toml", "--out", name).returncode == 0
+    assert evoframe("-q", "report", *plugin, "a", "b").stdout.splitlines() == ["a/report", "b/report"]
+    refused = evoframe("report", *plugin, "a", "b", "--out", "c")
+    assert refused.returncode == 2
+    assert "Error: --out c: is one place, but 2 reports are asked for" in refused.stderr
 
 
 def test_says_what_has_to_be_installed(study: list[str], tmp_path: Path) -> None:

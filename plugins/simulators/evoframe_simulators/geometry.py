@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["geometry"]
 
-# Red contracts and blue does not, in colours of Okabe and Ito (2008).
-_CONTRACTILE = ("#D55E00", "#CC79A7", "#E69F00")
-_PASSIVE = ("#0072B2", "#56B4E9", "#009E73")
+# Red contracts and blue does not: of the vibrant colours of Paul Tol, made for eyes of all kinds.
+_CONTRACTILE = ("#CC3311", "#EE3377", "#EE7733")
+_PASSIVE = ("#0077BB", "#33BBEE", "#009988")
 _TRANSLUCENT = 0.12
 
 _SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))  # counter-clockwise

@@ -6,7 +6,7 @@ differ in their dashes too.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,20 +14,17 @@ import pandas as pd
 import scikit_posthocs as posthocs
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
-from scipy import stats
 
+from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.statistics import Comparison
 from evoframe.analysis.study_data import View, Yardstick
+from evoframe.analysis.units import NAMES, axis_title, factor_of
 
-__all__ = ["NAMES", "curves", "finals", "ranks"]
+__all__ = ["COLOURS", "DASHES", "curves", "finals", "lines", "ranks"]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
-NAMES: Mapping[Yardstick, str] = {"score": "best pair simulated", "fitness": "best fitness"}
-
 _WIDTH = 3.5  # inches: a column of an article
-_RESAMPLES = 2000
 
 
 def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
@@ -38,19 +35,36 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
         yardstick: What is drawn.
         unit: Of scores; metres are shown as millimetres.
     """
+    label = axis_title(NAMES[yardstick], unit)
+    return lines(lines_of_view(view, yardstick, unit), label, view.title, f"{view.key}: runs")
+
+
+def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = None) -> Figure:
+    """Return lines over generations.
+
+    Args:
+        drawn: What is drawn.
+        label: Of the vertical axis.
+        title: What stands above it.
+        legend: What stands above the names of lines.
+    """
     figure, axes = _figure(height=3.0)
-    for number, (name, rows) in enumerate(view.groups.items()):
-        drawn = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * _factor(unit)
-        generations = np.arange(drawn.shape[1])
-        style: dict[str, Any] = {"color": COLOURS[number % 8], "linestyle": DASHES[number % 4], "lw": 1.2}
-        axes.plot(generations, drawn.mean(axis=0), label=f"{name}: {len(rows)}", **style)
-        if len(rows) > 1:
-            axes.fill_between(generations, *_band(drawn), color=style["color"], alpha=0.18, lw=0)
-    axes.set(xlabel="generation", ylabel=_label(yardstick, unit))
-    axes.set_title(view.title, size=9)
-    wide = max(map(len, view.groups)) > 4  # a column has room for four short names, or two long ones
+    for line in drawn:
+        style: dict[str, Any] = {
+            "color": COLOURS[line.colour % len(COLOURS)],
+            "linestyle": DASHES[line.dash % len(DASHES)],
+        }
+        generations = np.arange(len(line.values))
+        axes.plot(generations, line.values, label=line.name, lw=1.2, **style)
+        if line.band is not None:
+            axes.fill_between(generations, *line.band, color=style["color"], alpha=0.18, lw=0)
+    axes.set(xlabel="generation", ylabel=label)
+    axes.set_title(title, size=9)
+    wide = (
+        max(len(line.name) for line in drawn) > 8
+    )  # a column has room for four short names, or two long ones
     figure.legend(
-        title=f"{view.key}: runs",
+        title=legend,
         frameon=False,
         loc="outside lower center",
         ncols=2 if wide else 4,
@@ -72,7 +86,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     """
     figure, axes = _figure()
     groups = view.values(yardstick)
-    scaled = [np.array(values) * _factor(unit) for values in groups.values()]
+    scaled = [np.array(values) * factor_of(unit) for values in groups.values()]
     places = np.arange(1, len(groups) + 1)
     boxes = axes.boxplot(
         scaled,
@@ -90,7 +104,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
         _letter(axes, comparison, list(groups))
     labels = [f"{name}\n{len(values)} runs".replace(" (", "\n(") for name, values in groups.items()]
     axes.set_xticks(places, labels)
-    axes.set(xlabel=view.key, ylabel=_label(yardstick, unit), xlim=(0.5, len(groups) + 0.5))
+    axes.set(xlabel=view.key, ylabel=axis_title(NAMES[yardstick], unit), xlim=(0.5, len(groups) + 0.5))
     axes.set_title(view.title, size=9, pad=12)  # the letters are below it
     return figure
 
@@ -134,16 +148,6 @@ def _figure(height: float = 2.6) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _band(drawn: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the 95 % interval of the mean of each column."""
-    if np.ptp(drawn, axis=0).max() == 0:
-        return drawn[0], drawn[0]
-    found = stats.bootstrap(
-        (drawn,), np.mean, axis=0, n_resamples=_RESAMPLES, method="percentile", rng=np.random.default_rng(0)
-    )
-    return found.confidence_interval.low, found.confidence_interval.high
-
-
 def _letter(axes: Axes, comparison: Comparison, names: Sequence[str]) -> None:
     for place, name in enumerate(names, start=1):
         axes.annotate(
@@ -154,12 +158,3 @@ def _letter(axes: Axes, comparison: Comparison, names: Sequence[str]) -> None:
             va="bottom",
             size=8,
         )
-
-
-def _factor(unit: str) -> float:
-    return 1000.0 if unit == "m" else 1.0  # displacements are millimetres
-
-
-def _label(yardstick: Yardstick, unit: str) -> str:
-    shown = {"m": " (mm)", "": ""}.get(unit, f" ({unit})")
-    return f"{NAMES[yardstick]}{shown}"

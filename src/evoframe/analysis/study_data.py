@@ -10,8 +10,10 @@ from typing import Any, Literal, TypeAlias
 import attrs
 import pandas as pd
 
+from evoframe.champion import LARGEST_DOCUMENT
 from evoframe.discovery import discover
 from evoframe.errors import InputError
+from evoframe.files import read_text
 from evoframe.plugins import Plugins
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
@@ -36,6 +38,8 @@ class StudyData:
         unit: Of the scores.
         planned: How many runs there shall be.
         rows: Of the finished ones, in the order of work.
+        best_run: The directory of the run with the best pair, of those whose directories are there.
+        settings: The study as it stands in its file.
     """
 
     label: str
@@ -43,6 +47,8 @@ class StudyData:
     unit: str
     planned: int
     rows: tuple[Row, ...] = attrs.field(repr=False)
+    best_run: Path | None = None
+    settings: str = attrs.field(default="", repr=False)
 
     @property
     def frame(self) -> pd.DataFrame:
@@ -140,7 +146,18 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
     statuses = survey(study, directory, elsewhere)
     finished = [planned for planned, status in statuses.items() if status.state == "finished"]
     rows = gather(study, directory, finished)
-    return StudyData(directory.name, tuple(study.grid), _unit(study), len(statuses), tuple(rows))
+    here = [
+        (row.score, run.directory) for row, run in zip(rows, finished, strict=True) if run.directory.is_dir()
+    ]
+    return StudyData(
+        label=directory.absolute().name,
+        keys=tuple(study.grid),
+        unit=_unit(study),
+        planned=len(statuses),
+        rows=tuple(rows),
+        best_run=max(here, key=lambda found: found[0])[1] if here else None,
+        settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
+    )
 
 
 def _unit(study: Study) -> str:

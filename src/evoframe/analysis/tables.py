@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from collections.abc import Mapping
+from typing import Any, TypeAlias
 
 import pandas as pd
 
 from evoframe.analysis.statistics import Comparison, Correction, compare
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
+from evoframe.provenance import leaves
+from evoframe.verification import Verification
 
-__all__ = ["comparisons", "pairs_table", "ranking_table", "summary_table"]
+__all__ = [
+    "comparisons",
+    "pairs_table",
+    "ranking_table",
+    "summary_table",
+    "verification_table",
+    "versions_table",
+]
 
 Compared: TypeAlias = list[tuple[View, Yardstick, Comparison]]
 
@@ -74,11 +84,36 @@ def ranking_table(found: Compared) -> pd.DataFrame:
             {
                 "view": view.title,
                 "yardstick": yardstick,
+                "ranking": comparison.ranking,
                 "Kruskal-Wallis H": comparison.h,
                 "p": comparison.p,
                 "epsilon squared": comparison.epsilon_squared,
-                "ranking": comparison.ranking,
             }
             for view, yardstick, comparison in found
         ]
     )
+
+
+def verification_table(verification: Verification) -> pd.DataFrame:
+    """Return a line for each change: the median score with it, and its part of the unchanged score."""
+    return pd.DataFrame(
+        [
+            {
+                "variant": finding.name,
+                f"median ({verification.unit or 1})": finding.median,
+                "of unchanged": verification.share(finding),
+                "draws": len(finding.scores),
+                "diverged": len(finding.diverged_at),
+            }
+            for finding in verification.rows
+        ]
+    )
+
+
+def versions_table(provenance: Mapping[str, Any]) -> pd.DataFrame:
+    """Return a line for each thing that a run says it was made by."""
+    found = [
+        (key, ", ".join(map(str, value)) if isinstance(value, list) else str(value))
+        for key, value in leaves(provenance)
+    ]
+    return pd.DataFrame(found, columns=["what", "which"])

@@ -13,15 +13,19 @@ __all__ = ["report"]
 
 _EPILOG = """\b
 Examples:
+  evoframe report runs/paper-1
   evoframe report studies/paper
   evoframe report studies/paper --correction none --out article
 """
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("directory", metavar="STUDY", type=click.Path(path_type=Path))
+@click.argument("directories", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
-    "--out", type=click.Path(path_type=Path), metavar="DIR", help="Where to; by default STUDY/report."
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Where to, if it is one report; by default DIR/report.",
 )
 @click.option(
     "--correction",
@@ -32,24 +36,26 @@ Examples:
 )
 @common_options
 @click.pass_context
-def report(ctx: click.Context, directory: Path, out: Path | None, correction: str) -> None:
-    """Write figures, tables and conclusions of a study, finished or not.
+def report(ctx: click.Context, directories: tuple[Path, ...], out: Path | None, correction: str) -> None:
+    """Write figures, tables, conclusions and a page of runs and studies, finished or not.
 
-    STUDY is the directory of a study. The last key of its grid is what is compared; each combination of the
-    others has figures and tests of its own, on two yardsticks: the score of the best pair that was simulated,
-    and the averaged fitness.
+    DIR is the directory of a run or of a study. The last key of a study's grid is what is compared; each
+    combination of the others has figures and tests of its own, on two yardsticks: the score of the best pair
+    that was simulated, and the averaged fitness. The page, report.html, has all in one file.
     """
     try:
         from evoframe.analysis.report import write_report  # noqa: PLC0415 - takes a second, and an extra
-        from evoframe.analysis.study_data import load_study  # noqa: PLC0415
     except ModuleNotFoundError as error:
         raise InputError(
             f"{error.name} is not installed; for reports: pip install 'evoframe[report]'"
         ) from error
-    target = out or directory / "report"
-    written = write_report(load_study(directory, plugins=plugins_of(ctx)), target, correction)  # type: ignore[arg-type]
-    if is_quiet(ctx):
-        click.echo(target)
-        return
-    click.echo((target / "conclusions.txt").read_text(encoding="utf-8"))
-    click.echo(f"{len(written)} files are in {target}", err=True)
+    if out is not None and len(directories) > 1:
+        raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
+    for directory in directories:
+        target = out or directory / "report"
+        written = write_report(directory, target, plugins_of(ctx), correction)  # type: ignore[arg-type]
+        if is_quiet(ctx):
+            click.echo(target)
+        else:
+            click.echo(written.words)
+            click.echo(f"{len(written.files)} files are in {target}; to be looked at: report.html", err=True)

@@ -18,7 +18,7 @@ from evoframe.loading import Run, load_run
 from evoframe.store import CHAMPION_FILE, write_atomically
 from evoframe.study.plan import Planned, shown
 
-__all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "write_rows"]
+__all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "score_curve", "write_rows"]
 
 ROWS_FILE = "rows.csv"
 CURVES_FILE = "curves.csv"
@@ -95,7 +95,7 @@ def row_of(planned: Planned) -> Row:
     """
     run = load_run(planned.directory)
     work, summary = run.workload, run.summary
-    fitness, score = _fitness_curve(run), _score_curve(run, len(planned.cell.config.populations))
+    fitness, score = _fitness_curve(run), score_curve(run, len(planned.cell.config.populations))
     return Row(
         settings={key: shown(value) for key, value in planned.cell.settings},
         run=planned.index,
@@ -122,7 +122,7 @@ def _fitness_curve(run: Run) -> tuple[float, ...]:
     return tuple(best[generation] for generation in sorted(best))
 
 
-def _score_curve(run: Run, populations: int) -> tuple[float, ...]:
+def score_curve(run: Run, populations: int) -> tuple[float, ...]:
     """Return the best score so far at the end of each generation, in which every population has its turn."""
     ends = range(0, len(run.workload), populations)
     found = run.table("best_pairs")

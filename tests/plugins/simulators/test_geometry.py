@@ -77,7 +77,7 @@ def test_a_layer_with_a_hole_encloses_nothing() -> None:
 def test_what_is_contractile_is_red_and_what_is_not_is_blue() -> None:
     body = np.array([[[1]], [[3]]], np.uint8)
     colours = {name: part.colour for name, part in named(Vox().geometry(design(body), 1)).items()}
-    assert colours == {"passive": "#0072B2", "contractile": "#D55E00"}
+    assert colours == {"passive": "#0077BB", "contractile": "#CC3311"}
 
 
 def test_materials_of_a_palette_have_colours_of_their_own() -> None:

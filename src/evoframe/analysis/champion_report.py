@@ -1,0 +1,88 @@
+"""The champion in a report: figures of its body and its networks, and sections of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import attrs
+from matplotlib.figure import Figure
+
+from evoframe.analysis.bodies import body
+from evoframe.analysis.champions import ChampionData
+from evoframe.analysis.networks import network
+from evoframe.analysis.page import Block, Motion, Picture, Section, Table, Words
+from evoframe.analysis.tables import verification_table
+from evoframe.analysis.units import with_unit
+from evoframe.analysis.writing import svg_of, write_figure, write_table
+
+__all__ = ["DrawnChampion", "champion_sections", "drawn", "write_champion"]
+
+
+@attrs.frozen(eq=False)
+class DrawnChampion:
+    """A champion with its figures.
+
+    Attributes:
+        data: What is known of it.
+        body: What it looks like; ``None`` if its simulator does not say.
+        networks: Population -> the network of its genome.
+    """
+
+    data: ChampionData
+    body: Figure | None
+    networks: Mapping[str, Figure]
+
+
+def drawn(data: ChampionData) -> DrawnChampion:
+    """Draw the figures of a champion."""
+    title = with_unit(data.score, data.unit)
+    networks = {
+        each.population: network(each.graph, each.inputs, each.outputs, each.population)
+        for each in data.networks
+    }
+    return DrawnChampion(data, body(data.geometry, title) if data.geometry else None, networks)
+
+
+def write_champion(champion: DrawnChampion, directory: Path) -> list[Path]:
+    """Write the figures of a champion, and the table of its verification if there is one.
+
+    Raises:
+        RunError: They cannot be written.
+    """
+    written = []
+    if champion.body is not None:
+        written += write_figure(champion.body, directory / "champion-body")
+    for population, figure in champion.networks.items():
+        written += write_figure(figure, directory / _name(population))
+    if champion.data.verification is not None:
+        written += write_table(verification_table(champion.data.verification), directory / "verification")
+    return written
+
+
+def champion_sections(champion: DrawnChampion, whose: str) -> list[Section]:
+    """Return what a page shows of a champion.
+
+    Args:
+        champion: What is shown.
+        whose: Where it comes from, as in ``the best pair that was simulated``.
+    """
+    data, pictures = champion.data, champion.networks.items()
+    blocks: list[Block] = [Words(f"The champion, {whose}, scores {with_unit(data.score, data.unit)}.")]
+    if data.geometry is None:
+        blocks.append(Words("Its simulator does not say what its designs look like."))
+    else:
+        caption = "The champion as it is simulated, with displacements exaggerated. Drag to turn it."
+        blocks.append(Motion(caption, data.geometry, data.track))
+    if data.verification is not None:
+        caption = "What is left of its score with one thing changed at a time (evoframe verify)."
+        blocks.append(Table(caption, verification_table(data.verification)))
+    networks = [
+        Picture(f"The network that drew its {population}.", svg_of(figure, _name(population)))
+        for population, figure in pictures
+    ]
+    return [Section("Champion", blocks), Section("Networks", networks)]
+
+
+def _name(population: str) -> str:
+    return f"champion-network-{population}"

@@ -1,0 +1,93 @@
+"""Charts of a page, to be looked at closely: the interactive counterparts of the figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from plotly.graph_objects import Box, Figure, Scatter
+
+from evoframe.analysis.lines import Line
+from evoframe.analysis.study_data import View, Yardstick
+from evoframe.analysis.units import NAMES, axis_title, factor_of
+
+__all__ = ["finals_chart", "lines_chart"]
+
+_DASHES = ("solid", "dash", "dot", "dashdot")
+
+
+def lines_chart(drawn: Sequence[Line], label: str) -> Figure:
+    """Return lines over generations, with their bands.
+
+    Args:
+        drawn: What is drawn.
+        label: Of the vertical axis.
+    """
+    traces = []
+    for line in drawn:
+        colour = {"colour": line.colour}
+        generations = np.arange(len(line.values))
+        if line.band is not None:
+            low, high = line.band
+            around = np.concatenate([high, low[::-1]]).round(6)
+            there = np.concatenate([generations, generations[::-1]])
+            traces.append(
+                Scatter(
+                    x=there.tolist(),
+                    y=around.tolist(),
+                    fill="toself",
+                    line_width=0,
+                    mode="lines",
+                    hoverinfo="skip",
+                    showlegend=False,
+                    legendgroup=line.name,
+                    meta=colour,
+                )
+            )
+        traces.append(
+            Scatter(
+                x=generations.tolist(),
+                y=line.values.round(6).tolist(),
+                name=line.name,
+                mode="lines",
+                line_dash=_DASHES[line.dash % len(_DASHES)],
+                legendgroup=line.name,
+                meta=colour,
+            )
+        )
+    return _arranged(Figure(traces), "generation", label)
+
+
+def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
+    """Return every run's final value beside a box plot of its group.
+
+    Args:
+        view: The groups.
+        yardstick: What is drawn.
+        unit: Of scores; metres are shown as millimetres.
+    """
+    traces = [
+        Box(
+            y=(np.array(values) * factor_of(unit)).round(6).tolist(),
+            name=f"{name}: {len(values)}",
+            boxpoints="all",
+            jitter=0.5,
+            pointpos=-1.6,
+            marker_size=4,
+            meta={"colour": number},
+        )
+        for number, (name, values) in enumerate(view.values(yardstick).items())
+    ]
+    plot = _arranged(Figure(traces), f"{view.key}: runs", axis_title(NAMES[yardstick], unit))
+    return plot.update_layout(showlegend=False, hovermode="closest")
+
+
+def _arranged(plot: Figure, x: str, y: str) -> Figure:
+    return plot.update_layout(
+        template=None,
+        xaxis={"title": {"text": x}},
+        yaxis={"title": {"text": y}},
+        margin={"l": 60, "r": 10, "t": 10, "b": 50},
+        hovermode="x unified",
+        legend={"orientation": "h", "y": -0.25, "yanchor": "top"},
+    )

@@ -1,0 +1,84 @@
+"""What develops over the generations of a run, or of many, as lines to be drawn."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from evoframe.analysis.study_data import View, Yardstick
+from evoframe.analysis.units import NAMES, factor_of
+from evoframe.loading import Run
+from evoframe.study.rows import score_curve
+
+__all__ = ["Line", "lines_of_run", "lines_of_view"]
+
+_RESAMPLES = 2000
+_BLACK, _DOTTED = 6, 2
+
+Floats = NDArray[np.float64]
+
+
+@attrs.frozen(eq=False)
+class Line:
+    """A value for each generation, from 0 up.
+
+    Attributes:
+        name: What a legend calls it.
+        values: ``float64[generations]``, as they are shown.
+        colour: Which of the colours it has.
+        dash: Which of the dashes it has.
+        band: The least and the greatest values that are probable, ``float64[generations]`` each.
+    """
+
+    name: str
+    values: Floats
+    colour: int
+    dash: int
+    band: tuple[Floats, Floats] | None = None
+
+
+def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line]:
+    """Return the mean over the runs of each group, with its 95 % band (bootstrap over runs).
+
+    Args:
+        view: The groups.
+        yardstick: What is drawn.
+        unit: Of scores; metres become millimetres.
+    """
+    drawn = []
+    for number, (name, rows) in enumerate(view.groups.items()):
+        curves = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * factor_of(unit)
+        band = _band(curves) if len(rows) > 1 else None
+        drawn.append(Line(f"{name}: {len(rows)}", curves.mean(axis=0), number, number, band))
+    return drawn
+
+
+def lines_of_run(run: Run, unit: str = "") -> list[Line]:
+    """Return the score of the best pair so far, and of each population the best and the mean fitness.
+
+    Args:
+        run: The run, finished or not.
+        unit: Of scores; metres become millimetres.
+    """
+    turns, factor = run.turns, factor_of(unit)
+    populations = list(run.config["populations"])
+    drawn = []
+    for number, population in enumerate(populations):
+        rows = [row for row in turns if row["population"] == population]
+        for dash, what in enumerate(("best", "mean")):
+            values = np.array([row[what] for row in rows]) * factor
+            drawn.append(Line(f"{population}: {what} fitness", values, number, dash))
+    score = np.array(score_curve(run, len(populations))) * factor
+    return [*drawn, Line(NAMES["score"], score, _BLACK, _DOTTED)]  # on top: the best fitness is hardly less
+
+
+def _band(curves: Floats) -> tuple[Floats, Floats]:
+    """Return the 95 % interval of the mean of each column."""
+    if np.ptp(curves, axis=0).max() == 0:
+        return curves[0], curves[0]
+    found = stats.bootstrap(
+        (curves,), np.mean, axis=0, n_resamples=_RESAMPLES, method="percentile", rng=np.random.default_rng(0)
+    )
+    return found.confidence_interval.low, found.confidence_interval.high

@@ -1,0 +1,81 @@
+"""The report of a run: figures, tables, and a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from evoframe.analysis.champion_report import DrawnChampion, champion_sections, drawn, write_champion
+from evoframe.analysis.champions import ChampionData, load_champion
+from evoframe.analysis.charts import lines_chart
+from evoframe.analysis.figures import lines
+from evoframe.analysis.lines import lines_of_run
+from evoframe.analysis.page import Chart, Section, Source, Table, page
+from evoframe.analysis.tables import versions_table
+from evoframe.analysis.units import axis_title, with_unit
+from evoframe.analysis.writing import Written, folder, write_bytes, write_figure, write_table
+from evoframe.champion import LARGEST_DOCUMENT
+from evoframe.files import read_text
+from evoframe.loading import Run, load_run
+from evoframe.plugins import Plugins
+from evoframe.store import CONFIG_FILE
+
+__all__ = ["write_run_report"]
+
+_CAPTION = "The score of the best pair so far, and the fitness of each population, in each generation."
+
+
+def write_run_report(directory: Path, target: Path, plugins: Plugins) -> Written:
+    """Write the report of a run.
+
+    Args:
+        directory: The run, finished or not.
+        target: Where to.
+        plugins: The plugins that its configuration names.
+
+    Raises:
+        ConfigurationError: The run cannot be read with these plugins.
+        InputError: It is no run's directory, has no champion yet, or is damaged; or *target* cannot be made.
+        RunError: The report cannot be written.
+    """
+    run, champion = load_run(directory), load_champion(directory, plugins)
+    curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
+    title, lead, with_figures = directory.absolute().name, _lead(run, champion), drawn(champion)
+    folder(target)
+    written = write_figure(lines(curves, label, title), target / "curves")
+    written += write_champion(with_figures, target)
+    written += write_table(_summary(run, champion), target / "summary")
+    data = page(title, lead, _sections(run, with_figures, Chart(_CAPTION, lines_chart(curves, label))))
+    written.append(write_bytes(data, target / "report.html"))
+    return Written(f"{title}: {lead}\n", tuple(written))
+
+
+def _sections(run: Run, champion: DrawnChampion, progress: Chart) -> list[Section]:
+    text = read_text(run.directory / CONFIG_FILE, LARGEST_DOCUMENT)
+    made_by = versions_table(run.config.get("provenance", {}))
+    return [
+        *champion_sections(champion, "the best pair that was simulated"),
+        Section("Progress", [progress, Table("The final figures.", _summary(run, champion.data))]),
+        Section("Configuration", [Source(CONFIG_FILE, text), Table("What made it.", made_by)]),
+    ]
+
+
+def _lead(run: Run, champion: ChampionData) -> str:
+    work, score = run.workload, with_unit(champion.score, champion.unit)
+    pairs, simulated = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
+    state = "finished" if run.finished else "not finished yet"
+    done = f"{len(work) - 1:,} turns, {state}; {pairs:,} pairs, {simulated:,} of them simulated"
+    return f"best pair {score}; {done}"
+
+
+def _summary(run: Run, champion: ChampionData) -> pd.DataFrame:
+    """Return the final figures, which are those of the last turn as long as the run goes on."""
+    last = {row["population"]: row for row in run.turns}
+    figures = {"best pair": champion.score}
+    for name in run.config["populations"]:
+        figures[f"{name}: best fitness"] = last[name]["best"]
+        figures[f"{name}: mean fitness"] = last[name]["mean"]
+    if run.finished:
+        figures["pair of the fittest"] = run.summary["fittest_pair_score"]
+    return pd.DataFrame({"figure": list(figures), f"value ({champion.unit or 1})": list(figures.values())})

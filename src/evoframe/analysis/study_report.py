@@ -1,0 +1,167 @@
+"""The report of a study: figures, tables, words, and a page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import attrs
+import pandas as pd
+
+from evoframe.analysis.champion_report import champion_sections, drawn, write_champion
+from evoframe.analysis.champions import load_champion
+from evoframe.analysis.charts import finals_chart, lines_chart
+from evoframe.analysis.figures import curves, finals, ranks
+from evoframe.analysis.lines import lines_of_view
+from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
+from evoframe.analysis.statistics import Comparison, Correction
+from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
+from evoframe.analysis.tables import (
+    Compared,
+    comparisons,
+    pairs_table,
+    ranking_table,
+    summary_table,
+    versions_table,
+)
+from evoframe.analysis.units import NAMES, axis_title
+from evoframe.analysis.words import conclusion
+from evoframe.analysis.writing import Written, folder, write_bytes, write_figure, write_table
+from evoframe.errors import InputError
+from evoframe.loading import load_run
+from evoframe.plugins import Plugins
+from evoframe.study.conduct import STUDY_FILE
+
+__all__ = ["write_study_report"]
+
+
+def write_study_report(
+    data: StudyData, target: Path, plugins: Plugins, correction: Correction = "holm"
+) -> Written:
+    """Write the report of a study.
+
+    Args:
+        data: The study.
+        target: Where to.
+        plugins: The plugins that the configuration of its best run names.
+        correction: Of the p-values of pairs; ``none`` is what the paper does.
+
+    Raises:
+        ConfigurationError: The best run cannot be read with these plugins.
+        InputError: No run is finished, or *target* cannot be made.
+        RunError: It cannot be written.
+    """
+    if not data.rows:
+        raise InputError(f"{data.label}: no run of this study is finished, so there is nothing to report")
+    folder(target)
+    found = comparisons(data, correction)
+    written = _figures(data, found, target)
+    tables = _tables(found)
+    for name, table in tables.items():
+        written += write_table(table, target / name)
+    champion = drawn(load_champion(data.best_run, plugins)) if data.best_run else None
+    if champion is not None:
+        written += write_champion(champion, target)
+    words = _words(data, found)
+    written.append(write_bytes(words.encode(), target / "conclusions.txt"))
+    rankings, *compared = _compared_sections(data, found, tables["ranking"])
+    sections = [
+        rankings,
+        *(champion_sections(champion, _whose(data)) if champion else []),
+        *compared,
+        Section("Tables", _large(tables)),
+        Section("Configuration", list(_sources(data))),
+    ]
+    written.append(write_bytes(page(data.label, _finished(data), sections), target / "report.html"))
+    return Written(words, tuple(written))
+
+
+@attrs.frozen
+class _Shown:
+    """A view on one yardstick, with its comparison if there is more than one group."""
+
+    view: View
+    yardstick: Yardstick
+    comparison: Comparison | None
+
+
+def _shown(data: StudyData, found: Compared) -> Iterator[_Shown]:
+    compared = {(view.title, yardstick): comparison for view, yardstick, comparison in found}
+    for yardstick in YARDSTICKS:
+        for view in data.views(yardstick):
+            yield _Shown(view, yardstick, compared.get((view.title, yardstick)))
+
+
+def _figures(data: StudyData, found: Compared, directory: Path) -> list[Path]:
+    written = []
+    for shown in _shown(data, found):
+        view, yardstick, comparison = shown.view, shown.yardstick, shown.comparison
+        name = re.sub(r"[^A-Za-z0-9.]+", "-", f"{yardstick} {view.title}").strip("-")
+        written += write_figure(curves(view, yardstick, data.unit), directory / f"curves-{name}")
+        written += write_figure(finals(view, yardstick, data.unit, comparison), directory / f"finals-{name}")
+        if comparison is not None:
+            written += write_figure(ranks(comparison, view.title), directory / f"ranks-{name}")
+    return written
+
+
+def _tables(found: Compared) -> dict[str, pd.DataFrame]:
+    return {"summary": summary_table(found), "pairs": pairs_table(found), "ranking": ranking_table(found)}
+
+
+def _large(tables: dict[str, pd.DataFrame]) -> list[Block]:
+    captions = {
+        "summary": "How the values of each group lie; groups that share a letter are not found to differ.",
+        "pairs": "All pairs of groups: Dunn's test, and how often the first beats the second (A12).",
+    }
+    return [Table(caption, tables[name]) for name, caption in captions.items() if len(tables[name])]
+
+
+def _compared_sections(data: StudyData, found: Compared, rankings: pd.DataFrame) -> list[Section]:
+    """Return a section for each view, with both yardsticks, after that of all rankings."""
+    by_title: dict[str, list[Block]] = {}
+    for shown in _shown(data, found):
+        view, unit, name = shown.view, data.unit, NAMES[shown.yardstick]
+        blocks = by_title.setdefault(view.title, [])
+        if shown.comparison is not None:
+            blocks.append(Words(f"{shown.comparison.ranking}: {conclusion(shown.comparison, f'the {name}')}"))
+        plot = lines_chart(lines_of_view(view, shown.yardstick, unit), axis_title(name, unit))
+        over_runs = "mean over runs, with 95 % bands (bootstrap)" if _many(view) else "mean over runs"
+        blocks.append(Chart(f"The {name} in each generation: {over_runs}.", plot))
+        plot = finals_chart(view, shown.yardstick, unit)
+        blocks.append(Chart(f"The {name} of every run in the end.", plot))
+    summary = [Table("Rankings in the paper's notation: = is not found to differ.", rankings)]
+    sections = [Section(title, blocks) for title, blocks in by_title.items()]
+    return [Section("Rankings", summary if len(rankings) else []), *sections]
+
+
+def _many(view: View) -> bool:
+    return all(len(rows) > 1 for rows in view.groups.values())
+
+
+def _sources(data: StudyData) -> Iterator[Block]:
+    if data.settings:
+        yield Source(STUDY_FILE, data.settings)
+    if data.best_run:
+        provenance = load_run(data.best_run).config.get("provenance", {})
+        yield Table("What made the best run.", versions_table(provenance))
+
+
+def _whose(data: StudyData) -> str:
+    here = "" if data.best_run is None else f" ({data.best_run.parent.name}, run {data.best_run.name})"
+    return f"of the best run whose directory is here{here}"
+
+
+def _words(data: StudyData, found: Compared) -> str:
+    parts = [f"{data.label}: {_finished(data)}"]
+    for view, yardstick, comparison in found:
+        what, heading = f"the {NAMES[yardstick]}", f"{view.title}, {NAMES[yardstick]}"
+        parts.append(f"{heading}: {comparison.ranking}\n{conclusion(comparison, what)}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _finished(data: StudyData) -> str:
+    finished = f"{len(data.rows)} of {data.planned} runs are finished."
+    return (
+        finished if len(data.rows) == data.planned else f"{finished} What follows may change with the others."
+    )

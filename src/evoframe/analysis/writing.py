@@ -1,0 +1,112 @@
+"""Figures and tables as files: the same content gives the same bytes, with nothing of the time in them."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import attrs
+import matplotlib as mpl
+import pandas as pd
+from matplotlib.figure import Figure
+
+from evoframe.errors import InputError
+from evoframe.store import write_atomically
+
+__all__ = ["Written", "folder", "svg_of", "write_bytes", "write_figure", "write_table"]
+
+_FORMATS: dict[str, dict[str, Any]] = {
+    "pdf": {"metadata": {"CreationDate": None, "Creator": None, "Producer": None}},
+    "svg": {"metadata": {"Date": None, "Creator": None}},
+    "png": {"metadata": {"Software": None}, "dpi": 300},
+}
+
+
+@attrs.frozen
+class Written:
+    """A report.
+
+    Attributes:
+        words: What it says.
+        files: What was written.
+    """
+
+    words: str
+    files: tuple[Path, ...]
+
+
+def folder(directory: Path) -> Path:
+    """Make a directory for a report, if it is not there.
+
+    Raises:
+        InputError: It cannot be made.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a report: {error.strerror}") from error
+    return directory
+
+
+def write_figure(figure: Figure, path: Path) -> list[Path]:
+    """Write a figure as PDF, SVG and PNG.
+
+    Args:
+        figure: What is drawn.
+        path: Where to, without an ending.
+
+    Returns:
+        What was written.
+
+    Raises:
+        RunError: It cannot be written.
+    """
+    return [
+        write_bytes(_bytes_of(figure, ending, path.name), path.with_name(f"{path.name}.{ending}"))
+        for ending in _FORMATS
+    ]
+
+
+def svg_of(figure: Figure, name: str) -> bytes:
+    """Return a figure as the bytes of an SVG file; *name* makes the ids in it its own."""
+    return _bytes_of(figure, "svg", name)
+
+
+def write_table(table: pd.DataFrame, path: Path) -> list[Path]:
+    """Write a table as CSV, and as LaTeX with four digits.
+
+    Args:
+        table: What is written.
+        path: Where to, without an ending.
+
+    Returns:
+        What was written.
+
+    Raises:
+        RunError: It cannot be written.
+    """
+    texts = {
+        "csv": table.to_csv(index=False),
+        "tex": table.to_latex(index=False, float_format="%.4g", escape=True),
+    }
+    return [
+        write_bytes(text.encode(), path.with_name(f"{path.name}.{ending}")) for ending, text in texts.items()
+    ]
+
+
+def write_bytes(data: bytes, path: Path) -> Path:
+    """Write a file, and return its path.
+
+    Raises:
+        RunError: It cannot be written.
+    """
+    write_atomically(path, data)
+    return path
+
+
+def _bytes_of(figure: Figure, ending: str, name: str) -> bytes:
+    data = io.BytesIO()
+    with mpl.rc_context({"svg.hashsalt": name, "pdf.fonttype": 42, "svg.fonttype": "none"}):
+        figure.savefig(data, format=ending, **_FORMATS[ending])
+    return data.getvalue()
