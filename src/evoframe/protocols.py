@@ -86,8 +86,8 @@ class Encoder(Protocol):
 
     Laws: roles, shapes and dtypes as declared; pure; total: every network gives a design.
 
-    It may offer ``input_names`` and ``output_names``, each a tuple of words: what a figure of a network
-    writes beside its nodes.
+    It may offer ``input_names`` and ``output_names``, each a tuple of words, one for each input or output:
+    what a figure of a network writes beside its nodes.
     """
 
     @property
@@ -154,8 +154,9 @@ class EvolverRun(Protocol):
 class Evolver(Protocol):
     """Options of an evolutionary algorithm that works on networks.
 
-    It may offer ``graph(genome) -> NetworkGraph``: what a figure draws of a genome, given as
-    :meth:`EvolverRun.dump` gives it, but perhaps from a file of anyone: a ``ValueError`` says what is wrong.
+    It may offer ``graph(genome, inputs, outputs) -> NetworkGraph``: what a figure draws of a genome whose
+    network has so many *inputs* and *outputs*. The genome is given as :meth:`EvolverRun.dump` gives it, but
+    perhaps from a file of anyone: a ``ValueError`` says what is wrong.
     """
 
     def check(self, size: int) -> None:

@@ -15,6 +15,7 @@ ROLES = "test_every_network_gives_the_declared_roles"
 SHAPES = "test_shapes_and_types_are_the_same_for_every_network"
 FINITE = "test_every_network_gives_finite_numbers"
 SAME = "test_the_same_network_gives_the_same_design"
+NAMES = "test_names_are_as_many_as_inputs_and_outputs"
 LEFT_ALONE = "test_the_design_that_is_given_is_left_alone"
 POINTS = np.arange(8.0).reshape(4, 2)
 
@@ -42,6 +43,35 @@ class OnABody(EncoderContract):
 
 class TestStripe(OnABody):
     component = Stripe()
+
+
+class Named(Stripe):
+    input_names: ClassVar[Any] = ("u", "v")
+    output_names: ClassVar[Any] = ("colour",)
+
+
+class TestNamedStripe(OnABody):
+    component = Named()
+
+
+class OneNameTooMany(Named):
+    input_names = ("u", "v", "w")
+
+
+class ListOfNames(Named):
+    input_names = ["u", "v"]  # noqa: RUF012 - the fault under test
+
+
+class OneNameForAll(Named):
+    input_names = ("u", "u")
+
+
+class NoName(Named):
+    output_names = (" ",)
+
+
+class NumberForAName(Named):
+    output_names = (1,)
 
 
 class NoRole(Stripe):
@@ -134,6 +164,11 @@ class NoInputs(Stripe):
         (ListOfRoles(), DECLARED),
         (RequiredAndProvided(), DECLARED),
         (NoInputs(), "test_a_network_has_inputs_and_outputs"),
+        (OneNameTooMany(), NAMES),
+        (ListOfNames(), NAMES),
+        (OneNameForAll(), NAMES),
+        (NoName(), NAMES),
+        (NumberForAName(), NAMES),
         (OneRoleMore(), ROLES),
         (OneRoleLess(), ROLES),
         (OnlyItsRole(), ROLES),

@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 import pytest
-from contracts import starting
+from contracts import name_of, starting
 from numpy.typing import NDArray
 
-from evoframe import ConfigurationError, Member, Network
+from evoframe import ConfigurationError, Member, Network, NetworkGraph, NetworkLink
 from evoframe.testing import EvolverContract
 
 SIZES = "test_sizes_are_refused_by_a_configuration_error"
@@ -31,6 +31,9 @@ GLOBAL = "test_global_random_states_are_left_alone"
 INDEPENDENT = "test_global_random_states_do_not_matter"
 OUTPUTS = "test_networks_give_finite_outputs"
 FUNCTIONS = "test_networks_are_functions"
+GRAPH = "test_a_graph_has_the_networks_inputs_and_outputs"
+ONE_GRAPH = "test_a_genome_has_one_graph"
+DAMAGED = "test_a_damaged_genome_is_refused_by_a_value_error"
 JSON = "test_a_dumped_genome_is_json"
 
 Genome = dict[str, Any]
@@ -441,3 +444,142 @@ def test_refusals_that_are_none_are_caught(breaks: Callable[..., None]) -> None:
     breaks(EvolverContract, RefusesWithAnotherError(), SIZES, error=ValueError)
     breaks(EvolverContract, RefusesWithoutAWord(), SIZES)
     breaks(EvolverContract, Climber(), SIZES, size=1)
+
+
+@attrs.frozen
+class Drawn(Climber):
+    """A sound evolver whose genomes can be drawn, and the base of those that are not."""
+
+    def graph(self, genome: Any, inputs: int, outputs: int) -> Any:
+        weights = self.weights(genome, (inputs, outputs))
+        labels = dict.fromkeys(range(outputs), "tanh")
+        links = [NetworkLink(-1 - i, o, w) for i, row in enumerate(weights) for o, w in enumerate(row)]
+        return NetworkGraph(tuple(range(-1, -1 - inputs, -1)), tuple(labels), labels, tuple(links))
+
+    def weights(self, genome: Any, shape: tuple[int, int]) -> list[list[float]]:
+        if not isinstance(genome, dict):
+            raise ValueError("no genome")  # noqa: TRY004 - it is a bad document
+        try:
+            weights = np.array(genome.get("weights"), dtype=np.float64)
+        except (TypeError, OverflowError) as error:
+            raise ValueError("no weights") from error
+        if weights.shape != shape or not np.isfinite(weights).all():
+            raise ValueError("no weights")
+        found: list[list[float]] = weights.tolist()
+        return found
+
+
+class TestDrawn(EvolverContract):
+    component = Drawn()
+
+
+class Redrawn(Drawn):
+    def graph(self, genome: Any, inputs: int, outputs: int) -> Any:
+        return self.changed(super().graph(genome, inputs, outputs))
+
+    def changed(self, graph: NetworkGraph) -> Any:
+        return graph
+
+
+class DrawsATuple(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.astuple(graph)
+
+
+class LosesAnInput(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, inputs=graph.inputs[1:])
+
+
+class LosesAnOutput(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, outputs=graph.outputs[1:])
+
+
+class OneIdForTwo(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, inputs=graph.inputs[:1] * len(graph.inputs))
+
+
+class LabelsInputs(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, labels={**graph.labels, -1: "x"})
+
+
+class LosesALabel(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, labels={0: "tanh"}, links=())
+
+
+class EmptyLabel(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, labels=dict.fromkeys(graph.labels, " "))
+
+
+class LinksFromNowhere(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, links=(NetworkLink(99, 0, 1.0),))
+
+
+class LinksToAnInput(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, links=(NetworkLink(0, -1, 1.0),))
+
+
+class InfiniteWeight(Redrawn):
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, links=(NetworkLink(-1, 0, math.inf),))
+
+
+class DrawsOtherwiseNextTime(Redrawn):
+    calls: ClassVar[Any] = itertools.count()
+
+    def changed(self, graph: NetworkGraph) -> Any:
+        return attrs.evolve(graph, links=(NetworkLink(-1, 0, float(next(self.calls))),))
+
+
+class NotesThatItDrew(Drawn):
+    def graph(self, genome: Any, inputs: int, outputs: int) -> Any:
+        graph = super().graph(genome, inputs, outputs)
+        genome["drawn"] = True
+        return graph
+
+
+class BelievesWhatItReads(Drawn):
+    def weights(self, genome: Any, shape: tuple[int, int]) -> list[list[float]]:
+        found: list[list[float]] = genome["weights"]
+        return found
+
+
+class BelievesNumbers(Drawn):
+    def weights(self, genome: Any, shape: tuple[int, int]) -> list[list[float]]:
+        try:
+            return [[float(w) for w in row] for row in genome["weights"]]
+        except Exception as error:
+            raise ValueError("no weights") from error
+
+
+@pytest.mark.parametrize(
+    ("component", "law", "error"),
+    [
+        (DrawsATuple(), GRAPH, AssertionError),
+        (LosesAnInput(), GRAPH, AssertionError),
+        (LosesAnOutput(), GRAPH, AssertionError),
+        (OneIdForTwo(), GRAPH, AssertionError),
+        (LabelsInputs(), GRAPH, AssertionError),
+        (LosesALabel(), GRAPH, AssertionError),
+        (EmptyLabel(), GRAPH, AssertionError),
+        (LinksFromNowhere(), GRAPH, AssertionError),
+        (LinksToAnInput(), GRAPH, AssertionError),
+        (InfiniteWeight(), GRAPH, AssertionError),
+        (DrawsOtherwiseNextTime(), ONE_GRAPH, AssertionError),
+        (NotesThatItDrew(), ONE_GRAPH, AssertionError),
+        (BelievesWhatItReads(), DAMAGED, (TypeError, KeyError)),
+        (BelievesNumbers(), DAMAGED, AssertionError),
+    ],
+    ids=name_of,
+)
+def test_a_broken_drawing_is_caught(
+    component: Any, law: str, error: Any, breaks: Callable[..., None]
+) -> None:
+    breaks(EvolverContract, component, law, error=error)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -38,6 +39,9 @@ class CppnController:
     """
 
     normalized_coordinates: bool = False
+
+    input_names: ClassVar[tuple[str, ...]] = ("x", "y", "z", "material")
+    output_names: ClassVar[tuple[str, ...]] = ("phase offset",)
 
     @property
     def inputs(self) -> int:

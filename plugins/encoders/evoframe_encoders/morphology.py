@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
@@ -64,6 +64,9 @@ class CppnMorphology:
     threshold: float = attrs.field(default=0.5, validator=ge(0.0))
     normalized_coordinates: bool = False
     connected: bool = False
+
+    input_names: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    output_names: ClassVar[tuple[str, ...]] = ("presence", "material")
 
     @property
     def inputs(self) -> int:

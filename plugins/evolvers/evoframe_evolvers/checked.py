@@ -13,7 +13,7 @@ T = TypeVar("T")
 def entry(table: Any, key: str, kind: type[T]) -> T:
     """Return the value of *key* in *table*, which must be of *kind*."""
     if not isinstance(table, dict) or key not in table:
-        raise ValueError(f"the state has no '{key}'")
+        raise ValueError(f"'{key}' is missing")
     value = table[key]
     if not isinstance(value, kind):
         raise ValueError(f"'{key}' must be of type {kind.__name__}, not {value!r}")  # noqa: TRY004 - it is a bad state
@@ -39,9 +39,16 @@ def wholes(table: Any, key: str) -> list[int]:
 def number(table: Any, key: str) -> float:
     """Return the finite number of *key*."""
     value = entry(table, key, object)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not _is_finite(value):
         raise ValueError(f"'{key}' must be a finite number, not {value!r}")
     return float(value)
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # JSON has integers beyond all floats
+        return False
 
 
 def rows(table: Any, key: str, width: int | None = None) -> list[Any]:

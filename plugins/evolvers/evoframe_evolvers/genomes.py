@@ -1,4 +1,4 @@
-"""neat-python's genomes: their configuration from typed options, their expression, and their JSON."""
+"""neat-python's genomes: their configuration from typed options, and what a population of them shares."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Any, NoReturn, TypeAlias
 import attrs
 import neat
 import numpy as np
-from neat.genes import DefaultConnectionGene, DefaultNodeGene
 from neat.innovation import InnovationTracker
 
-from evoframe_evolvers.checked import entry, number, rows, whole
+from evoframe_evolvers.checked import entry, rows, whole
+from evoframe_evolvers.documents import express, load_genome
 from evoframe_evolvers.options import GeneOptions, GenomeOptions
 from evoframe_evolvers.randomness import PrivateStream
-from evoframe_libcppn import ACTIVATIONS, CppnNetwork
+from evoframe_libcppn import CppnNetwork
 
 __all__ = ["NO_SELECTION", "Counter", "GenePool", "Sections", "neat_sections"]
 
@@ -91,49 +91,15 @@ class GenePool:
 
     def express(self, genome: Any) -> CppnNetwork:
         """Return the network that *genome* encodes."""
-        links = [(*gene.key, gene.weight) for gene in genome.connections.values() if gene.enabled]
-        return CppnNetwork(self.inputs, self.outputs, genome.nodes, links)
-
-    def dump(self, genome: Any) -> dict[str, Any]:
-        """Return *genome* as JSON values; the order of genes matters, for neat-python walks through it."""
-        return {
-            "id": genome.key,
-            "nodes": [
-                {
-                    "id": gene.key,
-                    "bias": gene.bias,
-                    "response": gene.response,
-                    "activation": gene.activation,
-                    "aggregation": gene.aggregation,
-                    "time_constant": gene.time_constant,
-                }
-                for gene in genome.nodes.values()
-            ],
-            "connections": [
-                {
-                    "from": gene.key[0],
-                    "to": gene.key[1],
-                    "innovation": gene.innovation,
-                    "weight": gene.weight,
-                    "enabled": gene.enabled,
-                }
-                for gene in genome.connections.values()
-            ],
-        }
+        return express(genome, self.inputs, self.outputs)
 
     def load(self, saved: Any) -> Any:
-        """Return the genome that :meth:`dump` made *saved* of.
+        """Return the genome that :func:`dump_genome` made *saved* of.
 
         Raises:
             ValueError: It is no genome, or none that fits this population.
         """
-        genome = neat.DefaultGenome(whole(saved, "id", 1))
-        for gene in map(_load_node, rows(saved, "nodes")):
-            genome.nodes[gene.key] = gene
-        for gene in map(_load_connection, rows(saved, "connections")):
-            genome.connections[gene.key] = gene
-        if len(genome.nodes) + len(genome.connections) < len(saved["nodes"]) + len(saved["connections"]):
-            raise ValueError(f"genome {genome.key} has the same gene twice")
+        genome = load_genome(saved)
         self.express(genome)
         return genome
 
@@ -183,25 +149,6 @@ def _load_innovation(saved: list[Any]) -> tuple[tuple[int, int, str], int]:
     ):
         raise ValueError(f"not an innovation: {saved}")
     return (source, target, change), innovation
-
-
-def _load_node(saved: Any) -> Any:
-    gene = DefaultNodeGene(whole(saved, "id", 0))
-    gene.bias, gene.response = number(saved, "bias"), number(saved, "response")
-    gene.activation, gene.aggregation = entry(saved, "activation", str), entry(saved, "aggregation", str)
-    gene.time_constant = number(saved, "time_constant")
-    if gene.activation not in ACTIVATIONS or gene.aggregation != "sum":
-        raise ValueError(
-            f"node {gene.key} has activation '{gene.activation}', aggregation '{gene.aggregation}'"
-        )
-    return gene
-
-
-def _load_connection(saved: Any) -> Any:
-    key = (whole(saved, "from"), whole(saved, "to", 0))
-    gene = DefaultConnectionGene(key, innovation=whole(saved, "innovation", 1))
-    gene.weight, gene.enabled = number(saved, "weight"), entry(saved, "enabled", bool)
-    return gene
 
 
 def _neat_config(sections: Sections) -> Any:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from evoframe import Member, Network
 from evoframe_evolvers.checked import entry
 from evoframe_evolvers.cohort import Cohort
+from evoframe_evolvers.documents import dump_genome
 from evoframe_evolvers.genomes import GenePool
 
 __all__ = ["NetworkRun"]
@@ -56,7 +57,7 @@ class NetworkRun(ABC):
 
     def dump(self, genome: Any) -> Any:
         """Return *genome* as JSON values."""
-        return self._pool.dump(genome)
+        return dump_genome(genome)
 
     def _saved_cohort(self, state: Any, evolver: str) -> Cohort:
         """Return the cohort of a saved state, which must be one of this *evolver*."""

@@ -9,7 +9,8 @@ from typing import Any
 import attrs
 from attrs.validators import and_, ge, instance_of, le
 
-from evoframe import suggestion
+from evoframe import NetworkGraph, suggestion
+from evoframe_evolvers.graphs import genome_graph
 from evoframe_libcppn import ACTIVATIONS
 
 __all__ = [
@@ -127,3 +128,11 @@ class GenomeOptions:
     def provenance(self) -> dict[str, str]:
         """Return the version of the library that breeds the genomes."""
         return {"neat-python": version("neat-python")}
+
+    def graph(self, genome: Any, inputs: int, outputs: int) -> NetworkGraph:
+        """Return what a figure draws of a *genome* that a run has dumped.
+
+        Raises:
+            ValueError: It is no such genome, or encodes no network with so many inputs and outputs.
+        """
+        return genome_graph(genome, inputs, outputs)

@@ -16,7 +16,8 @@ __all__ = ["EncoderContract"]
 class EncoderContract(ComponentContract[Encoder]):
     """The laws of an :class:`~evoframe.Encoder`.
 
-    An encoder that requires roles overrides :meth:`design`.
+    An encoder that requires roles overrides :meth:`design`. Names of inputs and outputs are tested where they
+    are offered.
     """
 
     protocol = Encoder
@@ -48,6 +49,16 @@ class EncoderContract(ComponentContract[Encoder]):
         """At least one of each."""
         assert self.component.inputs >= 1
         assert self.component.outputs >= 1
+
+    def test_names_are_as_many_as_inputs_and_outputs(self) -> None:
+        """A tuple of different words for each, so that a figure can tell them apart."""
+        for offered, number in (("input_names", "inputs"), ("output_names", "outputs")):
+            if hasattr(self.component, offered):
+                names = getattr(self.component, offered)
+                assert isinstance(names, tuple), f"{offered} is no tuple"
+                assert len(names) == getattr(self.component, number)
+                assert all(isinstance(name, str) and name.strip() for name in names)
+                assert len(set(names)) == len(names), f"{offered} has the same name twice"
 
     def test_the_example_has_the_required_roles(self) -> None:
         """Otherwise the other tests say nothing: override ``design()``."""

@@ -15,6 +15,7 @@ import pytest
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from evoframe.drawings import NetworkGraph
 from evoframe.protocols import Evolver, EvolverRun
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, global_random_state_untouched, refusal, same_bits
@@ -26,6 +27,8 @@ Floats = NDArray[np.float64]
 
 class EvolverContract(ComponentContract[Evolver]):
     """The laws of an :class:`~evoframe.Evolver` and of the run that it starts.
+
+    The graph of a genome is tested where it is offered.
 
     Attributes:
         inputs: Inputs of its networks.
@@ -183,6 +186,33 @@ class EvolverContract(ComponentContract[Evolver]):
                 dumped = run.dump(genome)
                 assert json.loads(_text(dumped)) == dumped
 
+    def test_a_graph_has_the_networks_inputs_and_outputs(self) -> None:
+        """Each node but the inputs has a label, and links join nodes; also after generations."""
+        for dumped in self._drawable():
+            self._assert_sound(self._graph(dumped))
+
+    def test_a_genome_has_one_graph(self) -> None:
+        """The same again, and from JSON text; the genome is left alone."""
+        for dumped in self._drawable():
+            before = _text(dumped)
+            graph = self._graph(dumped)
+            assert self._graph(dumped) == graph
+            assert self._graph(json.loads(before)) == graph
+            assert _text(dumped) == before
+
+    def test_a_damaged_genome_is_refused_by_a_value_error(self) -> None:
+        """Or it is still one: nothing else is raised, and no graph is unsound."""
+        texts = [_text(dumped) for dumped in self._drawable()][:: self.size]
+
+        def law(text: str, junk: Any, data: st.DataObject) -> None:
+            genome = json.loads(text)
+            damaged = _damaged(genome, data.draw(st.sampled_from(list(_places(genome)))), junk)
+            with contextlib.suppress(ValueError):
+                self._assert_sound(self._graph(damaged))
+
+        if texts:
+            for_all(law, text=st.sampled_from(texts), junk=_JUNK, data=st.data())
+
     def start(self, seed: int = 0) -> EvolverRun:
         """Start a run with its own random stream."""
         rng = np.random.default_rng(seed)
@@ -195,6 +225,31 @@ class EvolverContract(ComponentContract[Evolver]):
         fitness = np.array([answer.mean() for answer in answers])
         spread = np.array([answer.std() for answer in answers])
         return fitness, dict.fromkeys(self.measures, spread)
+
+    def _drawable(self) -> Iterator[Any]:
+        """Return the dumped genomes of several generations if the evolver offers their graphs."""
+        if hasattr(self.component, "graph"):
+            for run, genomes in self._play(self.start()):
+                yield from map(run.dump, genomes)
+
+    def _graph(self, dumped: Any) -> NetworkGraph:
+        component: Any = self.component
+        graph = component.graph(dumped, self.inputs, self.outputs)
+        assert isinstance(graph, NetworkGraph)
+        return graph
+
+    def _assert_sound(self, graph: NetworkGraph) -> None:
+        assert len(graph.inputs) == self.inputs
+        assert len(graph.outputs) == self.outputs
+        ends = [*graph.inputs, *graph.outputs]
+        assert len(set(ends)) == len(ends), "inputs and outputs have ids of their own"
+        assert not set(graph.inputs) & set(graph.labels), "inputs are named by the encoder"
+        assert set(graph.outputs) <= set(graph.labels)
+        assert all(isinstance(label, str) and label.strip() for label in graph.labels.values())
+        for link in graph.links:
+            assert link.start in graph.labels or link.start in graph.inputs
+            assert link.end in graph.labels
+            assert math.isfinite(link.weight)
 
     def _points(self, seed: int, scale: float) -> Floats:
         return scale * np.random.default_rng(seed).uniform(-1, 1, size=(16, self.inputs))
@@ -236,6 +291,34 @@ class EvolverContract(ComponentContract[Evolver]):
             run.tell(spoiled, measures)
         history = [self._tell(run, genomes), *self._history(run, self.turns - 1)]
         assert history == self._history(self.start())
+
+
+_MISSING: Any = object()
+_JUNK: st.SearchStrategy[Any] = st.one_of(
+    st.sampled_from([None, True, -1, 0, 2, 10**400, math.nan, math.inf, "", "sin", [], {}, [[]], [{}]]),
+    st.floats(),
+    st.just(_MISSING),
+)
+
+
+def _places(value: Any) -> Iterator[tuple[Any, ...]]:
+    """Return the keys that lead to each of the JSON values within *value*, which is the first."""
+    yield ()
+    if isinstance(value, dict | list):
+        for key in value if isinstance(value, dict) else range(len(value)):
+            yield from ((key, *rest) for rest in _places(value[key]))
+
+
+def _damaged(value: Any, place: tuple[Any, ...], junk: Any) -> Any:
+    """Return *value* with *junk* at a place, or without it if that is :data:`_MISSING`."""
+    if not place:
+        return None if junk is _MISSING else junk
+    parent = functools.reduce(lambda within, key: within[key], place[:-1], value)
+    if junk is _MISSING:
+        del parent[place[-1]]
+    else:
+        parent[place[-1]] = junk
+    return value
 
 
 def _with_last(value: float, fitness: Floats) -> Floats:

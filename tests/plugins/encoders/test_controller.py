@@ -45,6 +45,7 @@ def test_the_declarations_are_the_papers() -> None:
     encoder = CppnController()
     assert (encoder.inputs, encoder.outputs) == (4, 1)
     assert (encoder.requires, encoder.provides) == (("morphology",), ("controller",))
+    assert (encoder.input_names, encoder.output_names) == (("x", "y", "z", "material"), ("phase offset",))
 
 
 @given(BODIES, st.booleans(), SEEDS, SCALES)

@@ -59,6 +59,7 @@ def test_the_defaults_are_the_papers() -> None:
     assert encoder == CppnMorphology((20, 8, 8), enclosure=True, threshold=0.5, normalized_coordinates=False)
     assert (encoder.inputs, encoder.outputs) == (3, 2)
     assert (encoder.requires, encoder.provides) == ((), ("morphology",))
+    assert (encoder.input_names, encoder.output_names) == (("x", "y", "z"), ("presence", "material"))
 
 
 ENCODERS = st.builds(

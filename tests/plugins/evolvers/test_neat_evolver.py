@@ -14,6 +14,7 @@ from processes import python
 
 from evoframe.testing import EvolverContract
 from evoframe_evolvers import Neat, evoframe_evolvers
+from evoframe_evolvers.documents import dump_genome
 from evoframe_evolvers.genomes import GenePool
 from evoframe_evolvers.neat_evolver import _selection
 
@@ -80,7 +81,7 @@ def neat_alone(seed: int, generations: int) -> list[Any]:
     history = []
 
     def evaluate(genomes: list[Any], _: Any) -> None:
-        history.append([pool.dump(genome) for _, genome in genomes])
+        history.append([dump_genome(genome) for _, genome in genomes])
         for (_, genome), fitness in zip(genomes, fitness_of([g for _, g in genomes]), strict=True):
             genome.fitness = fitness
 
@@ -358,7 +359,7 @@ def test_a_damaged_state_is_refused_and_changes_nothing(damage: Any) -> None:
 
 @pytest.mark.parametrize("state", [None, 3, "x", [], {}])
 def test_what_is_no_state_is_refused(state: Any) -> None:
-    with pytest.raises(ValueError, match="the state has no 'evolver'"):
+    with pytest.raises(ValueError, match="'evolver' is missing"):
         start().restore(state)
 
 
