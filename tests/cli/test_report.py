@@ -10,6 +10,7 @@ import toys
 from processes import Evoframe, python, started, told
 from toy_study import STUDY
 
+VERIFIED = ("verification.csv", "verification.tex")
 NAMES = [
     f"{kind}-{yardstick}-{view}"
     for kind in ("curves", "finals", "ranks")
@@ -37,7 +38,7 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     written = contents(tmp_path / "s" / "report")
     figures = {f"{name}.{ending}" for name in NAMES for ending in ("pdf", "svg", "png")}
     tables = {f"{name}.{ending}" for name in ("summary", "pairs", "ranking") for ending in ("csv", "tex")}
-    assert set(written) == {*figures, *tables, "conclusions.txt", "report.html"}
+    assert set(written) == {*figures, *tables, *VERIFIED, "conclusions.txt", "report.html"}
     assert written["curves-score-n-1.pdf"].startswith(b"%PDF")
     assert written["curves-score-n-1.png"].startswith(b"\x89PNG")
     assert b"<svg" in written["curves-score-n-1.svg"]
@@ -92,6 +93,7 @@ def test_a_run_has_a_report_too(evoframe: Evoframe, tmp_path: Path) -> None:
     assert set(written) == {
         *(f"{name}.{ending}" for name in figures for ending in ("pdf", "svg", "png")),
         *("summary.csv", "summary.tex", "report.html"),
+        *VERIFIED,
     }
     assert shown.stdout.startswith("r: best pair ")
     assert "10 turns, finished; 224 pairs, 102 of them simulated" in shown.stdout
@@ -119,12 +121,7 @@ def test_what_its_plugins_do_not_draw_is_left_out_and_said(evoframe: Evoframe, t
     assert evoframe("report", *plugin, "r").returncode == 0
     written = contents(tmp_path / "r" / "report")
     assert set(written) == {
-        "curves.pdf",
-        "curves.svg",
-        "curves.png",
-        "summary.csv",
-        "summary.tex",
-        "report.html",
+        *("curves.pdf", "curves.svg", "curves.png", "summary.csv", "summary.tex", "report.html"),
     }
     assert b"Its simulator does not say what its designs look like." in written["report.html"]
 

@@ -27,21 +27,25 @@ class DrawnChampion:
         data: What is known of it.
         body: What it looks like; ``None`` if its simulator does not say.
         networks: Population -> the network of its genome.
+        undrawn: Population -> why its network is not drawn.
     """
 
     data: ChampionData
     body: Figure | None
     networks: Mapping[str, Figure]
+    undrawn: Mapping[str, str]
 
 
 def drawn(data: ChampionData) -> DrawnChampion:
     """Draw the figures of a champion."""
     title = with_unit(data.score, data.unit)
-    networks = {
-        each.population: network(each.graph, each.inputs, each.outputs, each.population)
-        for each in data.networks
-    }
-    return DrawnChampion(data, body(data.geometry, title) if data.geometry else None, networks)
+    networks, undrawn = {}, {}
+    for each in data.networks:
+        try:
+            networks[each.population] = network(each.graph, each.inputs, each.outputs, each.population)
+        except ValueError as error:  # nobody could read a network of thousands of nodes
+            undrawn[each.population] = str(error)
+    return DrawnChampion(data, body(data.geometry, title) if data.geometry else None, networks, undrawn)
 
 
 def write_champion(champion: DrawnChampion, directory: Path) -> list[Path]:
@@ -67,7 +71,7 @@ def champion_sections(champion: DrawnChampion, whose: str) -> list[Section]:
         champion: What is shown.
         whose: Where it comes from, as in ``the best pair that was simulated``.
     """
-    data, pictures = champion.data, champion.networks.items()
+    data = champion.data
     blocks: list[Block] = [Words(f"The champion, {whose}, scores {with_unit(data.score, data.unit)}.")]
     if data.geometry is None:
         blocks.append(Words("Its simulator does not say what its designs look like."))
@@ -77,9 +81,12 @@ def champion_sections(champion: DrawnChampion, whose: str) -> list[Section]:
     if data.verification is not None:
         caption = "What is left of its score with one thing changed at a time (evoframe verify)."
         blocks.append(Table(caption, verification_table(data.verification)))
-    networks = [
+    networks: list[Block] = [
         Picture(f"The network that drew its {population}.", svg_of(figure, _name(population)))
-        for population, figure in pictures
+        for population, figure in champion.networks.items()
+    ]
+    networks += [
+        Words(f"The network of {name} is not drawn: {why}.") for name, why in champion.undrawn.items()
     ]
     return [Section("Champion", blocks), Section("Networks", networks)]
 

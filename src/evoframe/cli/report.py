@@ -46,9 +46,8 @@ def report(ctx: click.Context, directories: tuple[Path, ...], out: Path | None, 
     try:
         from evoframe.analysis.report import write_report  # noqa: PLC0415 - takes a second, and an extra
     except ModuleNotFoundError as error:
-        raise InputError(
-            f"{error.name} is not installed; for reports: pip install 'evoframe[report]'"
-        ) from error
+        name = str(error.name).partition(".")[0]
+        raise InputError(f"{name} is not installed; for reports: pip install 'evoframe[report]'") from error
     if out is not None and len(directories) > 1:
         raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
     for directory in directories:
