@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
-
-import matplotlib as mpl
-import pandas as pd
-from matplotlib.figure import Figure
 
 from evoframe.analysis.figures import NAMES, curves, finals, ranks
+from evoframe.analysis.output import prepare_directory, write_figure, write_table
 from evoframe.analysis.statistics import Correction
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.analysis.tables import Compared, comparisons, pairs_table, ranking_table, summary_table
@@ -21,13 +16,6 @@ from evoframe.errors import InputError
 from evoframe.store import write_atomically
 
 __all__ = ["write_report"]
-
-# Nothing of the time or the program: the same study gives the same files.
-_FORMATS: dict[str, dict[str, Any]] = {
-    "pdf": {"metadata": {"CreationDate": None, "Creator": None, "Producer": None}},
-    "svg": {"metadata": {"Date": None, "Creator": None}},
-    "png": {"metadata": {"Software": None}, "dpi": 300},
-}
 
 
 def write_report(data: StudyData, directory: Path, correction: Correction = "holm") -> list[Path]:
@@ -47,10 +35,7 @@ def write_report(data: StudyData, directory: Path, correction: Correction = "hol
     """
     if not data.rows:
         raise InputError(f"{data.label}: no run of this study is finished, so there is nothing to report")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a report: {error.strerror}") from error
+    prepare_directory(directory)
     found = comparisons(data, correction)
     written = _figures(data, found, directory)
     for name, table in (
@@ -58,7 +43,7 @@ def write_report(data: StudyData, directory: Path, correction: Correction = "hol
         ("pairs", pairs_table(found)),
         ("ranking", ranking_table(found)),
     ):
-        written += _table(table, directory / name)
+        written += write_table(table, directory / name)
     path = directory / "conclusions.txt"
     write_atomically(path, _words(data, found).encode())
     return [*written, path]
@@ -70,10 +55,10 @@ def _figures(data: StudyData, found: Compared, directory: Path) -> list[Path]:
     for yardstick, view in _views(data):
         name = re.sub(r"[^A-Za-z0-9.]+", "-", f"{yardstick} {view.title}").strip("-")
         comparison = compared.get((view.title, yardstick))
-        written += _drawn(curves(view, yardstick, data.unit), directory / f"curves-{name}")
-        written += _drawn(finals(view, yardstick, data.unit, comparison), directory / f"finals-{name}")
+        written += write_figure(curves(view, yardstick, data.unit), directory / f"curves-{name}")
+        written += write_figure(finals(view, yardstick, data.unit, comparison), directory / f"finals-{name}")
         if comparison is not None:
-            written += _drawn(ranks(comparison, view.title), directory / f"ranks-{name}")
+            written += write_figure(ranks(comparison, view.title), directory / f"ranks-{name}")
     return written
 
 
@@ -81,32 +66,6 @@ def _views(data: StudyData) -> Iterator[tuple[Yardstick, View]]:
     for yardstick in YARDSTICKS:
         for view in data.views(yardstick):
             yield yardstick, view
-
-
-def _drawn(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure in all formats."""
-    written = []
-    with mpl.rc_context({"svg.hashsalt": path.name, "pdf.fonttype": 42, "svg.fonttype": "none"}):
-        for ending, options in _FORMATS.items():
-            data = io.BytesIO()
-            figure.savefig(data, format=ending, **options)
-            target = path.with_name(f"{path.name}.{ending}")
-            write_atomically(target, data.getvalue())
-            written.append(target)
-    return written
-
-
-def _table(table: pd.DataFrame, path: Path) -> list[Path]:
-    texts = {
-        "csv": table.to_csv(index=False),
-        "tex": table.to_latex(index=False, float_format="%.4g", escape=True),
-    }
-    written = []
-    for ending, text in texts.items():
-        target = path.with_name(f"{path.name}.{ending}")
-        write_atomically(target, text.encode())
-        written.append(target)
-    return written
 
 
 def _words(data: StudyData, found: Compared) -> str:
