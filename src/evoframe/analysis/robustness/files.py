@@ -33,6 +33,7 @@ __all__ = [
     "document_of",
     "read_robustness",
     "refuse_another",
+    "scores_text",
     "write_robustness",
 ]
 
@@ -64,7 +65,7 @@ def write_robustness(found: Findings, directory: Path) -> list[Path]:
     prepare_directory(directory)
     measured = found.measured
     texts = {
-        SCORES_FILE: _scores(measured),
+        SCORES_FILE: scores_text(measured),
         "conclusions.txt": conclusions(found),
         SETTING_FILE: f"{json.dumps(document_of(measured), indent=1)}\n",
     }
@@ -243,7 +244,8 @@ def _sound(setting: Setting, lost: list[Divergence]) -> bool:
     )
 
 
-def _scores(measured: Robustness) -> str:
+def scores_text(measured: Robustness) -> str:
+    """Return the table of all scores as CSV, exact to the last bit."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([_FIRST, *(body.label for body in measured.setting.bodies)])
