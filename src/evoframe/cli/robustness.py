@@ -117,7 +117,7 @@ def robustness(
         click.echo(json.dumps(document))
         return
     output().print(_table(document))
-    click.echo(f"\n{document['conclusions']}")
+    click.echo(f"\n{document['conclusions']}", nl=False)
     if not is_quiet(ctx):
         click.echo(f"{len(written)} files are in {directory}", err=True)
 

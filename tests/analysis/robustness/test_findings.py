@@ -65,6 +65,7 @@ class TestFindings:
         assert found.apart is not None
         assert found.within is not None
         assert found.apart.correction == found.within.correction == correction
+        assert set(pairs_table(found)["correction"]) == {correction}
 
     @pytest.mark.parametrize(("numbers", "most"), [([1.0], 9.0), ([1.0, 2.0], -9.0)])
     def test_are_none_where_nothing_can_be_compared(self, numbers: list[float], most: float) -> None:

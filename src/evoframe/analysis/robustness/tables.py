@@ -14,7 +14,10 @@ from evoframe.measurement import Robustness
 __all__ = ["bodies_table", "groups_table", "pairs_table", "ranking_table"]
 
 _SPREAD = ("median", "first quartile", "third quartile", "least", "greatest", "positive")
-_PAIRS = ("first", "second", "Dunn p", "A12", "Wilcoxon p", "wins", "Dunn p by body", "A12 by body")
+_PAIRS = (
+    *("first", "second", "correction", "Dunn p", "A12", "Wilcoxon p", "wins"),
+    *("Dunn p by body", "A12 by body"),
+)
 _RANKING = ("compared", "test", "statistic", "p", "effect size", "effect", "ranking")
 
 
@@ -70,7 +73,8 @@ def pairs_table(found: Findings) -> pd.DataFrame:
         block = found.within.pair(pair.first, pair.second)
         by_body = None if found.by_body is None else found.by_body.pair(pair.first, pair.second)
         own = (None, None) if by_body is None else (by_body.p, by_body.a12)
-        rows.append((pair.first, pair.second, pair.p, pair.a12, block.p, block.wins, *own))
+        names = (pair.first, pair.second, found.apart.correction)
+        rows.append((*names, pair.p, pair.a12, block.p, block.wins, *own))
     return pd.DataFrame(rows, columns=[*_PAIRS])
 
 
