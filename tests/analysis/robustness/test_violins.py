@@ -55,7 +55,7 @@ def test_each_group_has_extremes_quartiles_and_median_in_millimetres() -> None:
         ]  # fmt: skip
         [dot] = [line for line in axes.lines if line.get_marker() == "o" and line.get_ydata() == [place]]
         assert dot.get_xdata() == pytest.approx([middle])
-    assert title(figure) == "50 random controllers\nthe same for all of 3 bodies"
+    assert title(figure) == "50 random controllers\nthe same for all 3 bodies"
     assert len({line.get_color() for line in axes.lines}) > 3
 
 

@@ -48,7 +48,7 @@ _LARGEST = 256  # MiB
 _FIRST = "controller"  # heading of the first column
 
 
-def write_robustness(found: Findings, directory: Path) -> list[Path]:
+def write_robustness(found: Findings, directory: str | Path) -> list[Path]:
     """Write a measurement, its figure, tables and conclusions.
 
     Args:
@@ -62,8 +62,8 @@ def write_robustness(found: Findings, directory: Path) -> list[Path]:
         InputError: The directory cannot be made.
         RunError: It cannot be written.
     """
+    directory, measured = Path(directory), found.measured
     prepare_directory(directory)
-    measured = found.measured
     texts = {
         SCORES_FILE: scores_text(measured),
         "conclusions.txt": conclusions(found),

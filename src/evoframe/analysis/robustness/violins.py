@@ -51,7 +51,7 @@ def violins(measured: Robustness) -> Figure:
     axes.axvline(0.0, color="0.6", lw=0.6, zorder=0)
     _dress(axes, measured.setting.unit)
     bodies, controllers = len(measured.setting.bodies), measured.setting.controllers
-    shared = f"\nthe same for all of {bodies} bodies" if bodies > 1 else ""
+    shared = f"\nthe same for all {bodies} bodies" if bodies > 1 else ""
     drawn = "1 random controller" if controllers == 1 else f"{controllers:,} random controllers"
     figure.suptitle(f"{drawn}{shared}", size=8)
     return figure
