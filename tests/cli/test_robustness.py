@@ -179,6 +179,14 @@ class TestRefused:
         assert refused.returncode == 2
         assert "robustness: is not empty, and not the directory of a measurement" in refused.stderr
 
+    def test_is_a_place_that_cannot_be_written_to(
+        self, evoframe: Evoframe, toy_preset: None, tmp_path: Path
+    ) -> None:
+        (tmp_path / "file").write_text("")
+        refused = evoframe("robustness", *ALONE, "--out", "file/there")
+        assert refused.returncode == 2
+        assert "Error: file/there: cannot be used for a report: Not a directory" in refused.stderr
+
     def test_is_a_program_without_statistics(self, tmp_path: Path) -> None:
         program = "import sys; sys.modules['matplotlib'] = None; from evoframe.cli import main; main()"
         refused = python("-c", program, "robustness", "--published", directory=tmp_path)

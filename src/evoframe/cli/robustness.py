@@ -99,6 +99,7 @@ def robustness(
     """
     try:
         from evoframe.analysis import robustness as analysis  # noqa: PLC0415 - takes a second, and an extra
+        from evoframe.analysis.output import prepare_directory  # noqa: PLC0415
     except ModuleNotFoundError as error:
         raise InputError(
             f"{error.name} is not installed; for statistics and figures: pip install 'evoframe[report]'"
@@ -108,6 +109,7 @@ def robustness(
     setting = setting_of(candidates, seed, controllers)
     directory = out or _default_directory(sources)
     analysis.refuse_another(directory, setting, force=force)
+    prepare_directory(directory)  # before the time that it takes to measure
     with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as told:
         measured = measure(candidates, setting, told)
     found = analysis.find(measured, correction)

@@ -138,9 +138,11 @@ class TestWords:
         assert "more controllers make any difference significant, and 50 are enough" in words
         assert "diverged" not in words
         assert "same body" not in words
+        assert "a group is worth" not in words
 
     def test_of_several_bodies_compare_their_medians(self) -> None:
         words = conclusions(find(measure([1.0, 2.0, 3.0], 50, groups="XXY")))
+        assert "With each controller, a group is worth the median of its bodies' scores." in words
         assert "One value for each body, its median: Y = X" in words
         assert "With 1 body in the smallest group, a difference would have to be enormous" in words
         assert "Y is one body: no sample of a method." in words

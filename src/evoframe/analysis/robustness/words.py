@@ -32,7 +32,10 @@ def _measured(measured: Robustness) -> str:
     setting = measured.setting
     bodies, controllers = _counted(len(setting.bodies), "body", "bodies"), setting.controllers
     drawn = _counted(controllers, *_CONTROLLERS)
-    return f"{bodies} with {drawn}, drawn at random from seed {setting.seed} and the same for every body."
+    words = f"{bodies} with {drawn}, drawn at random from seed {setting.seed} and the same for every body."
+    if len(setting.bodies) > len(setting.groups) > 1:
+        words += " With each controller, a group is worth the median of its bodies' scores."
+    return words
 
 
 def _twins(measured: Robustness) -> Iterator[str]:
