@@ -24,6 +24,7 @@ from evoframe.evaluation import Evaluator, Score
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer
 from evoframe.loading import Champion, Run, load_run
+from evoframe.measurement import Body, Divergence, Robustness, Setting
 from evoframe.notebook import load_study
 from evoframe.plugins import Plugins, suggestion
 from evoframe.population import Population
@@ -42,6 +43,7 @@ from evoframe.protocols import (
 )
 from evoframe.resolve import load_config
 from evoframe.resuming import resume
+from evoframe.robustness import robustness
 from evoframe.run import assemble, run
 from evoframe.values import (
     BestPair,
@@ -69,12 +71,14 @@ __all__ = [
     "PASSIVE",
     "Aggregator",
     "BestPair",
+    "Body",
     "Champion",
     "Chosen",
     "Coevolution",
     "CollaborationStrategy",
     "ConfigurationError",
     "Design",
+    "Divergence",
     "Encoder",
     "Evaluator",
     "EvoframeError",
@@ -102,12 +106,14 @@ __all__ = [
     "PopulationConfig",
     "PopulationReport",
     "Record",
+    "Robustness",
     "Run",
     "RunConfig",
     "RunError",
     "RunSettings",
     "Score",
     "Scores",
+    "Setting",
     "Simulator",
     "Turn",
     "Variant",
@@ -124,6 +130,7 @@ __all__ = [
     "load_run",
     "load_study",
     "resume",
+    "robustness",
     "run",
     "suggestion",
     "verify",

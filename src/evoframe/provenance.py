@@ -33,13 +33,21 @@ def provenance(config: RunConfig) -> Tree:
     }
 
 
-def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Return a line for each value of two trees of tables that is not the same: its dotted key, then, now."""
+def differences(
+    then: Mapping[str, Any], now: Mapping[str, Any], words: tuple[str, str] = ("then", "now")
+) -> list[str]:
+    """Return a line for each value of two trees of tables that is not the same: its dotted key, then, now.
+
+    Args:
+        then: One tree.
+        now: The other.
+        words: What the lines call them.
+    """
     before, after = dict(leaves(then)), dict(leaves(now))
     keys = [*before, *(key for key in after if key not in before)]
     missing = "nothing"
     return [
-        f"{key}: {before.get(key, missing)!r} then, {after.get(key, missing)!r} now"
+        f"{key}: {before.get(key, missing)!r} {words[0]}, {after.get(key, missing)!r} {words[1]}"
         for key in keys
         if before.get(key, missing) != after.get(key, missing)
     ]

@@ -6,7 +6,7 @@ import random
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evoframe.analysis.blocks import compare_blocks
@@ -78,6 +78,28 @@ def test_a_small_advantage_in_every_block_is_found(given_values: list[float]) ->
     assert comparison.names == ("better", "worse")
     assert comparison.pairs[0].wins == 1.0
     assert comparison.p < 0.01
+
+
+@settings(max_examples=15)
+@given(values)
+def test_a_ranking_names_every_group_from_the_best_down(blocks: list[tuple[int, ...]]) -> None:
+    comparison = compare_blocks(groups(blocks))
+    assert comparison.ranking(0.0) == " = ".join(comparison.names)
+    assert comparison.ranking(1.1) == " > ".join(comparison.names)
+    ranks = [comparison.mean_ranks[name] for name in comparison.names]
+    assert ranks == sorted(ranks, reverse=True)
+
+
+@settings(max_examples=15)
+@given(values)
+def test_a_pair_can_be_asked_for_from_both_sides(blocks: list[tuple[int, ...]]) -> None:
+    comparison = compare_blocks(groups(blocks))
+    for pair in comparison.pairs:
+        there, back = (comparison.pair(pair.first, pair.second), comparison.pair(pair.second, pair.first))
+        assert there == pair
+        assert (back.first, back.p, back.wins) == (pair.second, pair.p, 1 - pair.wins)
+    with pytest.raises(KeyError):
+        comparison.pair("A", "nobody")
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from evoframe.analysis.statistics import compare
@@ -42,6 +44,18 @@ def test_one_that_differs_from_two_that_do_not() -> None:
         "(Dunn's test, not corrected for the number of pairs). The other pair is not found to differ."
         in words
     )
+
+
+def test_many_groups_are_not_listed_pair_by_pair() -> None:
+    words = conclusion(compare({f"G{n}": [value + 100 * n for value in NOISE[0]] for n in range(9)}), "it")
+    assert re.search(r"\d\d of 36 pairs differ \(Dunn's test, corrected after Holm\); the tables name", words)
+
+
+def test_values_need_not_be_of_runs() -> None:
+    words = conclusion(compare({"AM": NOISE[0], "WM": NOISE[1]}), "the score", ("body", "bodies"))
+    assert "With 30 bodies in the smallest group" in words
+    assert "all comparisons of two bodies; smaller ones cannot be excluded." in words
+    assert "run" not in words
 
 
 def test_too_few_runs() -> None:

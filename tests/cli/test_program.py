@@ -39,6 +39,7 @@ def test_says_its_version(evoframe: Evoframe) -> None:
         ["plugins"],
         ["plugins", "list"],
         ["config"],
+        ["robustness"],
         ["config", "show"],
         ["completion"],
     ],

@@ -28,6 +28,13 @@ def test_the_python_of_the_readme_runs(tmp_path: Path) -> None:
     assert ran.returncode == 0, ran.stderr
 
 
+def test_the_python_of_the_page_on_robustness_runs(tmp_path: Path) -> None:
+    [block] = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "robustness.md").read_text(), re.DOTALL)
+    ran = python("-c", block, directory=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "robustness" / "violins.pdf").is_file()
+
+
 def test_the_configuration_of_the_readme_is_valid(tmp_path: Path) -> None:
     [block] = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
     path = tmp_path / "mine.toml"

@@ -301,6 +301,26 @@ class Varied(Product):
 
 
 @attrs.frozen
+class Steered(Varied):
+    """Draws the number ``b`` between -1 and 1, brings two bodies, and diverges at a large product."""
+
+    most: float = 1e9
+    requires: ClassVar[tuple[str, ...]] = ("a", "b")
+
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Design:
+        return design.with_role("b", rng.uniform(-1.0, 1.0, design.roles["b"].shape))
+
+    def published(self) -> list[tuple[str, Design]]:
+        return [("one", self._design({"a": 1.0, "b": 0.0})), ("two", self._design({"a": 2.0, "b": 0.0}))]
+
+    def _outcome(self, design: Design) -> Outcome:
+        outcome = super()._outcome(design)
+        if not float(outcome.tracks["value"][0, 0]) > self.most:
+            return outcome
+        return attrs.evolve(outcome, tracks={"value": np.full((1, 3), np.nan)}, diverged_at=7)
+
+
+@attrs.frozen
 class Fitting(Varied):
     """Has two options that must fit together."""
 
@@ -367,6 +387,16 @@ class Here:
         CLOSED.append(self)
 
 
+@attrs.frozen
+class Many:
+    """Says that it has several workers."""
+
+    workers: int = 4
+
+    def start(self) -> Here:
+        return Here()
+
+
 @hookimpl
 def evoframe_aggregators() -> Mapping[str, type[Any]]:
     return {"toy-mean": Mean}
@@ -395,6 +425,7 @@ def evoframe_simulators() -> Mapping[str, type[Any]]:
         "toy-unsound": Unsound,
         "toy-hanging": Hanging,
         "toy-varied": Varied,
+        "toy-steered": Steered,
         "toy-fitting": Fitting,
         "toy-demanding": Demanding,
         "toy-unverifiable": Unverifiable,
@@ -408,7 +439,7 @@ def evoframe_objectives() -> Mapping[str, type[Any]]:
 
 @hookimpl
 def evoframe_executors() -> Mapping[str, type[Any]]:
-    return {"toy-here": Here}
+    return {"toy-here": Here, "toy-many": Many}
 
 
 CONFIGURATION = """

@@ -36,6 +36,10 @@ SAME_VARIANTS = "test_the_same_design_has_the_same_variants"
 GEOMETRY = "test_a_geometry_has_frames_of_meshes"
 FIRST_FRAME = "test_one_frame_is_the_first_of_many"
 FORMATS = "test_each_format_gives_the_same_bytes_twice"
+DRAWN = "test_a_random_controller_is_that_of_the_generators_state"
+BODY = "test_a_random_controller_leaves_the_body"
+SHARED = "test_bodies_of_the_same_shape_are_given_the_same_random_controller"
+PUBLISHED = "test_published_bodies_can_be_simulated"
 
 STEPS, STEP = 12, 0.01
 
@@ -210,7 +214,7 @@ class Redrawn(Offering):
         return part
 
 
-class DrawsNothing(Redrawn):
+class ShowsNothing(Redrawn):
     def changed(self, geometry: Geometry) -> Geometry:
         return attrs.evolve(geometry, parts=())
 
@@ -292,6 +296,86 @@ class WritesTheChampionsName(Offering):
 
 class WritesAPath(Offering):
     formats = ("../txt",)
+
+
+@attrs.frozen
+class Controlled(Spring):
+    """A sound simulator that draws controllers and brings bodies, and the base of those that are not.
+
+    Another role, ``push``, is the controller; here it does nothing.
+    """
+
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
+        return design.with_role("push", rng.uniform(-1.0, 1.0, design.roles["push"].shape))
+
+    def published(self) -> Any:
+        return [("soft", pushed(spring(0.1, 0.0))), ("stiff", pushed(spring(1.0, 0.0)))]
+
+
+def pushed(design: Design) -> Design:
+    return design.with_role("push", np.zeros(2))
+
+
+class ControlledContract(SpringContract):
+    def designs(self) -> Sequence[Design]:
+        return [pushed(design) for design in super().designs()]
+
+
+class TestControlled(ControlledContract):
+    component = Controlled()
+
+
+class DrawsWithoutTheGenerator(Controlled):
+    calls: ClassVar[Any] = itertools.count()
+
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
+        return design.with_role("push", np.array([next(self.calls), 0.0]))
+
+
+class DrawsNothing(Controlled):
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
+        return design
+
+
+class DrawsTheBodyToo(Controlled):
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
+        drawn = super().random_controller(design, rng)
+        return drawn.with_role("spring", rng.uniform(0.1, 1.0, 3))
+
+
+class DrawsAnotherRole(Controlled):
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
+        return design.with_role("wind", rng.uniform(-1.0, 1.0, 2))
+
+
+class DrawsWhatFits(Controlled):
+    """Draws more for stiffer springs."""
+
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
+        drawn = super().random_controller(design, rng)
+        return drawn.with_role("push", drawn.roles["push"] * design.roles["spring"][0])
+
+
+class PublishesOneNameTwice(Controlled):
+    def published(self) -> Any:
+        return [("soft", pushed(spring(0.1, 0.0))), ("soft", pushed(spring(1.0, 0.0)))]
+
+
+class PublishesWithoutAName(Controlled):
+    def published(self) -> Any:
+        return [(" ", pushed(spring(0.1, 0.0)))]
+
+
+class PublishesNoBody(Controlled):
+    def published(self) -> Any:
+        return [("soft", Design({"push": np.zeros(2)}))]
+
+
+class PublishesAnotherEachTime(Controlled):
+    calls: ClassVar[Any] = itertools.count(1)
+
+    def published(self) -> Any:
+        return [("soft", pushed(spring(float(next(self.calls)), 0.0)))]
 
 
 class IgnoresTheTimeToBeReached(Spring):
@@ -467,7 +551,7 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (VariesNothing(), VARIANTS),
         (VariantOfAnotherTrack(), VARIANTS),
         (DrawsAnew(), SAME_VARIANTS),
-        (DrawsNothing(), GEOMETRY),
+        (ShowsNothing(), GEOMETRY),
         (DrawsAllTheTime(), GEOMETRY),
         (DrawsFromTheFirstStep(), GEOMETRY),
         (DrawsAnUnknownTrack(), GEOMETRY),
@@ -488,6 +572,25 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
 )
 def test_a_broken_simulator_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(SpringContract, component, law)
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (DrawsWithoutTheGenerator(), DRAWN),
+        (DrawsNothing(), DRAWN),
+        (DrawsTheBodyToo(), BODY),
+        (DrawsAnotherRole(), BODY),
+        (DrawsWhatFits(), SHARED),
+        (PublishesOneNameTwice(), PUBLISHED),
+        (PublishesWithoutAName(), PUBLISHED),
+        (PublishesNoBody(), PUBLISHED),
+        (PublishesAnotherEachTime(), PUBLISHED),
+    ],
+    ids=name_of,
+)
+def test_a_broken_draw_or_body_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
+    breaks(ControlledContract, component, law)
 
 
 def test_a_lost_sample_is_caught(breaks: Callable[..., None]) -> None:

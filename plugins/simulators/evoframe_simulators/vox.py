@@ -38,6 +38,7 @@ from evoframe_simulators.models import (
     possible_clocks,
     without_number,
 )
+from evoframe_simulators.published import published_bodies
 from evoframe_simulators.regions import FixedRegion
 from evoframe_simulators.sampling import check_samples
 from evoframe_simulators.tracks import FURTHER, POINTS, check_room, check_tracks, shape_of
@@ -213,6 +214,26 @@ class Vox:
             ValueError: *frames* is not positive.
         """
         return geometry(self, design, frames)
+
+    def random_controller(self, design: Design, rng: np.random.Generator) -> Design:
+        """Return the body with offsets drawn from [-2 pi, 2 pi), uniformly, for every cell of its canvas.
+
+        Cells that are empty or do not act have offsets too, so that all bodies of a canvas get the same. As
+        with any controller, ``phase_unit`` says how they are read.
+
+        Raises:
+            InputError: The design is no body with a controller.
+        """
+        check_design(design)
+        offsets = rng.uniform(-math.tau, math.tau, design.roles[MORPHOLOGY].shape)
+        return design.with_role(CONTROLLER, offsets)
+
+    def published(self) -> list[tuple[str, Design]]:
+        """Return the bodies of ``evoframe_simulators.published`` with their labels, all offsets being 0."""
+        return [
+            (label, Design({MORPHOLOGY: material, CONTROLLER: np.zeros(material.shape)}))
+            for label, material in published_bodies().items()
+        ]
 
     def read(self, path: Path) -> list[tuple[str, Design]]:
         """Return the bodies of an ``.npz`` or ``.vxa`` file with their labels.

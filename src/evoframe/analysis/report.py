@@ -6,7 +6,6 @@ from pathlib import Path
 
 from evoframe.analysis.run_report import write_run_report
 from evoframe.analysis.statistics import Correction
-from evoframe.analysis.study_data import load_study
 from evoframe.analysis.study_report import write_study_report
 from evoframe.analysis.writing import Written
 from evoframe.errors import InputError
@@ -32,9 +31,9 @@ def write_report(directory: Path, target: Path, plugins: Plugins, correction: Co
         RunError: The report cannot be written.
     """
     if (directory / STUDY_FILE).is_file():
-        return write_study_report(load_study(directory, plugins=plugins), target, plugins, correction)
+        return write_study_report(directory, target, plugins, correction)
     if (directory / CONFIG_FILE).is_file():
-        return write_run_report(directory, target, plugins)
+        return write_run_report(directory, target, plugins, correction)
     raise InputError(
         f"{directory}: is no directory of a run or a study: there is no {CONFIG_FILE} and no {STUDY_FILE}"
     )

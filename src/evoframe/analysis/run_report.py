@@ -12,9 +12,11 @@ from evoframe.analysis.charts import lines_chart
 from evoframe.analysis.figures import lines
 from evoframe.analysis.lines import lines_of_run
 from evoframe.analysis.page import Chart, Section, Source, Table, page
+from evoframe.analysis.robustness import robustness_report
+from evoframe.analysis.statistics import Correction
 from evoframe.analysis.tables import versions_table
 from evoframe.analysis.units import axis_title, with_unit
-from evoframe.analysis.writing import Written, folder, write_bytes, write_figure, write_table
+from evoframe.analysis.writing import Written, prepare_directory, write_bytes, write_figure, write_table
 from evoframe.champion import LARGEST_DOCUMENT
 from evoframe.files import read_text
 from evoframe.loading import Run, load_run
@@ -26,13 +28,16 @@ __all__ = ["write_run_report"]
 _CAPTION = "The score of the best pair so far, and the fitness of each population, in each generation."
 
 
-def write_run_report(directory: Path, target: Path, plugins: Plugins) -> Written:
+def write_run_report(
+    directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm"
+) -> Written:
     """Write the report of a run.
 
     Args:
         directory: The run, finished or not.
         target: Where to.
         plugins: The plugins that its configuration names.
+        correction: Of the p-values of pairs of bodies, if its robustness was measured.
 
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
@@ -42,11 +47,14 @@ def write_run_report(directory: Path, target: Path, plugins: Plugins) -> Written
     run, champion = load_run(directory), load_champion(directory, plugins)
     curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
     title, lead, with_figures = directory.absolute().name, _lead(run, champion), drawn(champion)
-    folder(target)
+    prepare_directory(target)
     written = write_figure(lines(curves, label, title), target / "curves")
     written += write_champion(with_figures, target)
     written += write_table(_summary(run, champion), target / "summary")
-    data = page(title, lead, _sections(run, with_figures, Chart(_CAPTION, lines_chart(curves, label))))
+    more, robustness = robustness_report(directory, target, correction)
+    written += more
+    champion_first, *others = _sections(run, with_figures, Chart(_CAPTION, lines_chart(curves, label)))
+    data = page(title, lead, [champion_first, *robustness, *others])
     written.append(write_bytes(data, target / "report.html"))
     return Written(f"{title}: {lead}\n", tuple(written))
 

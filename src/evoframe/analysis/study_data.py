@@ -17,10 +17,11 @@ from evoframe.files import read_text
 from evoframe.plugins import Plugins
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
+from evoframe.study.names import called, last_of, title_of
 from evoframe.study.plan import Study, read_study
 from evoframe.study.rows import Row
 
-__all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "called", "load_study"]
+__all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
 
 Yardstick: TypeAlias = Literal["score", "fitness"]
 
@@ -78,9 +79,9 @@ class StudyData:
         for row in self.rows:
             groups = found.setdefault(tuple(row.settings[key] for key in self.keys[:-1]), {})
             groups.setdefault(called(row.settings[self.keys[-1]]), []).append(row)
-        titles = [_title(dict(zip(self.keys, values, strict=False))) for values in found]
+        titles = [title_of(dict(zip(self.keys, values, strict=False))) for values in found]
         views = [
-            View(title or self.label, _last(self.keys[-1]), groups)
+            View(title or self.label, last_of(self.keys[-1]), groups)
             for title, groups in zip(titles, found.values(), strict=True)
         ]
         return [*views, _best(views, yardstick)] if len(views) > 1 else views
@@ -105,11 +106,6 @@ class View:
         return {name: [getattr(row, yardstick) for row in rows] for name, rows in self.groups.items()}
 
 
-def called(value: str) -> str:
-    """Return what a value of the grid is called in an article: an average is AM, as the paper writes it."""
-    return value.upper() if len(value) == 2 else value
-
-
 def _best(views: Sequence[View], yardstick: Yardstick) -> View:
     best: dict[str, Sequence[Row]] = {}
     for view in views:
@@ -117,14 +113,6 @@ def _best(views: Sequence[View], yardstick: Yardstick) -> View:
         name = max(values, key=lambda name: math.fsum(values[name]) / len(values[name]))
         best[f"{name} ({view.title})"] = view.groups[name]
     return View("best of each", views[0].key, best)
-
-
-def _title(settings: Mapping[str, str]) -> str:
-    return ", ".join(f"{_last(key)} = {value}" for key, value in settings.items())
-
-
-def _last(key: str) -> str:
-    return key.rsplit(".", 1)[-1]
 
 
 def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:

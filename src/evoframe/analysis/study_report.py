@@ -15,8 +15,9 @@ from evoframe.analysis.charts import finals_chart, lines_chart
 from evoframe.analysis.figures import curves, finals, ranks
 from evoframe.analysis.lines import lines_of_view
 from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
+from evoframe.analysis.robustness import robustness_report
 from evoframe.analysis.statistics import Comparison, Correction
-from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
+from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick, load_study
 from evoframe.analysis.tables import (
     Compared,
     comparisons,
@@ -27,7 +28,7 @@ from evoframe.analysis.tables import (
 )
 from evoframe.analysis.units import NAMES, axis_title
 from evoframe.analysis.words import conclusion
-from evoframe.analysis.writing import Written, folder, write_bytes, write_figure, write_table
+from evoframe.analysis.writing import Written, prepare_directory, write_bytes, write_figure, write_table
 from evoframe.errors import InputError
 from evoframe.loading import load_run
 from evoframe.plugins import Plugins
@@ -37,24 +38,26 @@ __all__ = ["write_study_report"]
 
 
 def write_study_report(
-    data: StudyData, target: Path, plugins: Plugins, correction: Correction = "holm"
+    directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm"
 ) -> Written:
     """Write the report of a study.
 
     Args:
-        data: The study.
+        directory: The study, finished or not.
         target: Where to.
         plugins: The plugins that the configuration of its best run names.
         correction: Of the p-values of pairs; ``none`` is what the paper does.
 
     Raises:
-        ConfigurationError: The best run cannot be read with these plugins.
-        InputError: No run is finished, or *target* cannot be made.
+        ConfigurationError: The study cannot be read with these plugins.
+        InputError: It is no study's directory, none of its runs is finished, one is damaged, or *target*
+            cannot be made.
         RunError: It cannot be written.
     """
+    data = load_study(directory, plugins=plugins)
     if not data.rows:
         raise InputError(f"{data.label}: no run of this study is finished, so there is nothing to report")
-    folder(target)
+    prepare_directory(target)
     found = comparisons(data, correction)
     written = _figures(data, found, target)
     tables = _tables(found)
@@ -63,13 +66,15 @@ def write_study_report(
     champion = drawn(load_champion(data.best_run, plugins)) if data.best_run else None
     if champion is not None:
         written += write_champion(champion, target)
+    more, robustness = robustness_report(directory, target, correction)
     words = _words(data, found)
-    written.append(write_bytes(words.encode(), target / "conclusions.txt"))
+    written += [*more, write_bytes(words.encode(), target / "conclusions.txt")]
     rankings, *compared = _compared_sections(data, found, tables["ranking"])
     sections = [
         rankings,
         *(champion_sections(champion, _whose(data)) if champion else []),
         *compared,
+        *robustness,
         Section("Tables", _large(tables)),
         Section("Configuration", list(_sources(data))),
     ]

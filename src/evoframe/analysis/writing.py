@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from evoframe.errors import InputError
 from evoframe.store import write_atomically
 
-__all__ = ["Written", "folder", "svg_of", "write_bytes", "write_figure", "write_table"]
+__all__ = ["Written", "prepare_directory", "svg_of", "write_bytes", "write_figure", "write_table"]
 
 _FORMATS: dict[str, dict[str, Any]] = {
     "pdf": {"metadata": {"CreationDate": None, "Creator": None, "Producer": None}},
@@ -36,7 +36,7 @@ class Written:
     files: tuple[Path, ...]
 
 
-def folder(directory: Path) -> Path:
+def prepare_directory(directory: Path) -> Path:
     """Make a directory for a report, if it is not there.
 
     Raises:

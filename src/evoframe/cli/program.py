@@ -18,6 +18,7 @@ from evoframe.cli.export import export
 from evoframe.cli.plugins import plugins
 from evoframe.cli.report import report
 from evoframe.cli.resume import resume
+from evoframe.cli.robustness import robustness
 from evoframe.cli.run import run
 from evoframe.cli.signals import exit_code
 from evoframe.cli.simulate import simulate
@@ -82,6 +83,7 @@ Examples:
   evoframe study paper --dry-run              the published study: 600 runs
   evoframe simulate runs/paper-1/champion.json
   evoframe verify runs/paper-1                is its champion real?
+  evoframe robustness runs/paper-1 --published
   evoframe export runs/paper-1 --to vxa
   evoframe plugins list
   evoframe doctor                             is everything in order?
@@ -103,7 +105,20 @@ def cli() -> None:
     """
 
 
-for command in (completion, config, doctor, export, plugins, report, resume, run, simulate, study, verify):
+for command in (
+    completion,
+    config,
+    doctor,
+    export,
+    plugins,
+    report,
+    resume,
+    robustness,
+    run,
+    simulate,
+    study,
+    verify,
+):
     cli.add_command(command)
 
 

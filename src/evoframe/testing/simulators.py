@@ -13,6 +13,7 @@ import pytest
 from evoframe.drawings import Geometry, can_be_drawn
 from evoframe.errors import ConfigurationError
 from evoframe.exporting import export_design, formats_of
+from evoframe.measurement import can_draw, can_publish
 from evoframe.protocols import Simulator
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import assert_is_mesh, same_arrays, same_outcome
@@ -26,8 +27,8 @@ class SimulatorContract(ComponentContract[Simulator]):
     """The laws of a :class:`~evoframe.Simulator`.
 
     A subclass overrides :meth:`designs`, and :meth:`diverging` if a simulation can diverge. What diverges at
-    step 0 has never begun, and may have no samples. What a simulator may offer or not (variants, formats) is
-    tested where it is offered.
+    step 0 has never begun, and may have no samples. What a simulator may offer or not (variants, formats,
+    random controllers, published bodies) is tested where it is offered.
     """
 
     protocol = Simulator
@@ -257,6 +258,57 @@ class SimulatorContract(ComponentContract[Simulator]):
         if not can_be_drawn(self.component):
             return []
         return [self.component.geometry(design, frames) for design in self.designs()]
+
+    def test_a_random_controller_is_that_of_the_generators_state(self) -> None:
+        """The same again from the same state, another from another."""
+        for design in self.designs() if can_draw(self.component) else []:
+            one, again, other = (self._drawn(design, seed).roles for seed in (1, 1, 2))
+            assert same_arrays(one, again)
+            assert not same_arrays(one, other), "chance changes nothing"
+
+    def test_a_random_controller_leaves_the_body(self) -> None:
+        """The roles stay, at least one of them as it was, and there is something to simulate."""
+        for design in self.designs() if can_draw(self.component) else []:
+            drawn = self._drawn(design, 1)
+            assert isinstance(drawn, Design)
+            assert set(drawn.roles) == set(design.roles)
+            assert self._kept(design), "nothing is left of the body"
+            assert len(self._simulate([drawn])) == 1
+
+    def test_bodies_of_the_same_shape_are_given_the_same_random_controller(self) -> None:
+        """Whatever they are made of."""
+        known: dict[str, np.ndarray] = {}
+        for design in self.designs() if can_draw(self.component) else []:
+            drawn = self._drawn(design, 1)
+            shapes = repr(sorted((role, array.shape) for role, array in design.roles.items()))
+            for role in sorted(set(drawn.roles) - self._kept(design)):
+                first = known.setdefault(f"{role} of {shapes}", drawn.roles[role])
+                assert same_arrays({role: first}, {role: drawn.roles[role]})
+
+    def test_published_bodies_can_be_simulated(self) -> None:
+        """Each has a name of its own; they are the same every time."""
+        first, second = ([*self.component.published()] if can_publish(self.component) else [] for _ in "12")
+        labels = [label for label, _ in first]
+        assert all(isinstance(label, str) and label.strip() for label in labels)
+        assert len(set(labels)) == len(labels), "two bodies have one name"
+        for (label, design), (same_label, same) in zip(first, second, strict=True):
+            assert set(self.component.requires) <= set(design.roles)
+            assert label == same_label
+            assert same_arrays(design.roles, same.roles)
+            assert len(self._simulate([design])) == 1
+
+    def _drawn(self, design: Design, seed: int) -> Design:
+        assert can_draw(self.component)
+        return self.component.random_controller(design, np.random.default_rng(seed))
+
+    def _kept(self, design: Design) -> set[str]:
+        """Return the roles that no random controller changes."""
+        drawn = [self._drawn(design, seed).roles for seed in (1, 2)]
+        return {
+            role
+            for role, array in design.roles.items()
+            if all(same_arrays({role: array}, {role: roles[role]}) for roles in drawn)
+        }
 
     def _variants(self, design: Design) -> Sequence[Variant]:
         return self.component.variants(design, self.record()) if can_verify(self.component) else []

@@ -1,0 +1,72 @@
+"""What a measurement says of groups: each controller for itself, within controllers, and by body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe.analysis.blocks import BlockComparison, compare_blocks
+from evoframe.analysis.statistics import Comparison, Correction, compare
+from evoframe.measurement import Robustness
+
+__all__ = ["Findings", "find"]
+
+
+@attrs.frozen(eq=False)
+class Findings:
+    """A measurement and its tests; those are ``None`` where there is nothing to compare.
+
+    All of them rest on the controllers with which no body diverged. With each of these a group is worth the
+    median of its bodies' scores.
+
+    Attributes:
+        measured: The measurement.
+        apart: Groups compared as the paper does, each controller for itself: Kruskal-Wallis and Dunn.
+        within: Groups compared within controllers, which are the same for all: Friedman and Wilcoxon.
+        by_body: Groups compared with one value for each body, its median; there are such only where a group
+            has several bodies.
+    """
+
+    measured: Robustness
+    apart: Comparison | None
+    within: BlockComparison | None
+    by_body: Comparison | None
+
+    @property
+    def common(self) -> int:
+        """With how many controllers no body diverged."""
+        return len(self.measured.common)
+
+
+def find(measured: Robustness, correction: Correction = "holm") -> Findings:
+    """Compare the groups of a measurement.
+
+    Args:
+        measured: The measurement.
+        correction: Of the p-values of pairs; ``none`` is what the paper does.
+    """
+    groups = measured.setting.groups
+    if len(groups) < 2 or not len(measured.common):
+        return Findings(measured, None, None, None)
+    values = _listed({name: _middle(measured, columns, axis=1) for name, columns in groups.items()})
+    medians = _listed({name: _middle(measured, columns, axis=0) for name, columns in groups.items()})
+    several = len(measured.setting.bodies) > len(groups)
+    return Findings(
+        measured,
+        apart=compare(values, correction),
+        within=compare_blocks(values, correction),
+        by_body=compare(medians, correction) if several else None,
+    )
+
+
+def _middle(measured: Robustness, columns: list[int], axis: int) -> NDArray[np.float64]:
+    """Return the median over bodies (axis 1) or over controllers (axis 0)."""
+    middle: NDArray[np.float64] = np.median(measured.scores[measured.common][:, columns], axis=axis)
+    return middle
+
+
+def _listed(values: Mapping[str, NDArray[np.float64]]) -> dict[str, list[float]]:
+    return {name: array.tolist() for name, array in values.items()}

@@ -1,0 +1,171 @@
+"""``evoframe robustness``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+from rich import progress
+from rich.console import Console
+from rich.table import Table
+
+from evoframe.candidates import read_candidates
+from evoframe.cli.context import (
+    common_options,
+    is_quiet,
+    output,
+    plugins_of,
+    preset_option,
+    set_option,
+    workers_option,
+)
+from evoframe.errors import InputError
+from evoframe.layers import Layer
+from evoframe.robustness import measure, setting_of
+
+__all__ = ["robustness"]
+
+_EPILOG = """\b
+Examples:
+  evoframe robustness runs/paper-1 --published
+  evoframe robustness --published --controllers 1000 --correction none
+  evoframe robustness studies/paper --controllers 100
+"""
+
+
+@click.command(epilog=_EPILOG)
+@click.argument("sources", metavar="[RUN|STUDY|FILE]...", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "--controllers",
+    type=click.IntRange(1, 1_000_000),
+    default=1000,
+    show_default=True,
+    metavar="N",
+    help="How many are drawn; the same for all bodies.",
+)
+@click.option("--published", is_flag=True, help="Measure the bodies that the simulator brings, too.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="All controllers derive from it, and from nothing else.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Where to; by default RUN/robustness if one directory is named, otherwise robustness.",
+)
+@click.option("--force", is_flag=True, help="Replace what was measured otherwise.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, with all scores.")
+@click.option(
+    "--correction",
+    type=click.Choice(["holm", "bonferroni", "fdr_bh", "none"]),
+    default="holm",
+    show_default=True,
+    help="Of the p-values for the number of pairs; the paper uses none.",
+)
+@preset_option
+@set_option
+@workers_option
+@common_options
+@click.pass_context
+def robustness(
+    ctx: click.Context,
+    sources: tuple[Path, ...],
+    controllers: int,
+    published: bool,
+    seed: int,
+    out: Path | None,
+    force: bool,
+    as_json: bool,
+    correction: Any,
+    preset: str | None,
+    overrides: tuple[str, ...],
+    workers: list[Layer],
+) -> None:
+    """Simulate bodies with the same random controllers, and compare what they score.
+
+    A RUN is a run's directory and stands for its champion. A STUDY is a study's directory: the champions of
+    the finished runs of each configuration are a group. A FILE is what evoframe simulate takes. Figure,
+    tables, scores and conclusions are written as files.
+    """
+    try:
+        from evoframe.analysis import robustness as analysis  # noqa: PLC0415 - takes a second, and an extra
+        from evoframe.analysis.writing import prepare_directory  # noqa: PLC0415
+    except ModuleNotFoundError as error:
+        raise InputError(
+            f"{error.name} is not installed; for statistics and figures: pip install 'evoframe[report]'"
+        ) from error
+    settings: list[str | Layer] = [*overrides, *workers]
+    candidates = read_candidates(sources, preset, settings, plugins_of(ctx), published=published)
+    setting = setting_of(candidates, seed, controllers)
+    directory = out or _default_directory(sources)
+    analysis.refuse_another(directory, setting, force=force)
+    prepare_directory(directory)  # before the time that it takes to measure
+    with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as told:
+        measured = measure(candidates, setting, told)
+    found = analysis.find(measured, correction)
+    written = analysis.write_robustness(found, directory)
+    document = analysis.as_json(found)
+    if as_json:
+        click.echo(json.dumps(document))
+        return
+    output().print(_table(document))
+    click.echo(f"\n{document['conclusions']}", nl=False)
+    if not is_quiet(ctx):
+        click.echo(f"{len(written)} files are in {directory}", err=True)
+
+
+def _default_directory(sources: tuple[Path, ...]) -> Path:
+    if len(sources) == 1 and sources[0].is_dir():
+        return sources[0] / "robustness"
+    return Path("robustness")
+
+
+@contextmanager
+def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
+    """Show on a terminal how many simulations are done; yield who is told."""
+    console = Console(
+        stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
+    )
+    bar = progress.Progress(
+        progress.TextColumn("{task.completed:,} of {task.total:,} simulations"),
+        progress.BarColumn(bar_width=None),
+        progress.TimeRemainingColumn(),
+        progress.TextColumn("left"),
+        console=console,
+        transient=True,
+        expand=True,
+        disable=quiet or not console.is_terminal,
+    )
+    with bar:
+        task = bar.add_task("", total=total)
+        yield lambda done: bar.advance(task, done)
+
+
+def _table(document: dict[str, Any]) -> Table:
+    """Return the groups as a person reads them: a line each, displacements in millimetres."""
+    factor, shown = (1000.0, "mm") if document["unit"] == "m" else (1.0, document["unit"])
+    table = Table(box=None, header_style="bold")
+    table.add_column("", overflow="fold")
+    for heading in ("bodies", f"median {shown}".rstrip(), "quartiles", "range", "positive", "diverged"):
+        table.add_column(heading, justify="right", overflow="fold")
+    for row in document["tables"]["groups"]:
+        table.add_row(row["group"], str(row["bodies"]), *_spread(row, factor), str(row["diverged"]))
+    return table
+
+
+def _spread(row: dict[str, Any], factor: float) -> list[str]:
+    if row["median"] is None:
+        return ["", "", "", ""]
+    names = ("median", "first quartile", "third quartile", "least", "greatest")
+    middle, low, high, least, greatest = (f"{factor * row[name]:z.4g}" for name in names)
+    return [middle, f"{low} to {high}", f"{least} to {greatest}", f"{row['positive']:.1%}"]
