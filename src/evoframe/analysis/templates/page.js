@@ -146,7 +146,9 @@
       return found;
     };
     const layout = () => {
-      const scene = { aspectmode: "data", uirevision: "kept", camera: { eye: { x: 0.75, y: -1.3, z: 0.55 }, center: { x: 0, y: 0, z: -0.1 } } };
+      const away = Math.max(1, (1.45 * body.clientHeight) / body.clientWidth); // a narrow view shows less of it
+      const eye = { x: 0.75 * away, y: -1.3 * away, z: 0.55 * away };
+      const scene = { aspectmode: "data", uirevision: "kept", camera: { eye, center: { x: 0, y: 0, z: -0.1 } } };
       ranges().forEach((range, axis) => { scene[`${"xyz"[axis]}axis`] = { range, title: { text: `${"xyz"[axis]} (m)` }, nticks: 5 }; });
       return themed({ scene, margin: { l: 0, r: 0, t: 0, b: 0 }, legend: { orientation: "h", y: 0 }, uirevision: "kept" });
     };
