@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from plotly.graph_objects import Box, Figure, Scatter
 
 from evoframe.analysis.lines import Line
@@ -29,12 +31,12 @@ def lines_chart(drawn: Sequence[Line], label: str) -> Figure:
         generations = np.arange(len(line.values))
         if line.band is not None:
             low, high = line.band
-            around = np.concatenate([high, low[::-1]]).round(6)
+            around = np.concatenate([high, low[::-1]])
             there = np.concatenate([generations, generations[::-1]])
             traces.append(
                 Scatter(
                     x=there.tolist(),
-                    y=around.tolist(),
+                    y=_told(around),
                     fill="toself",
                     line_width=0,
                     mode="lines",
@@ -47,7 +49,7 @@ def lines_chart(drawn: Sequence[Line], label: str) -> Figure:
         traces.append(
             Scatter(
                 x=generations.tolist(),
-                y=line.values.round(6).tolist(),
+                y=_told(line.values),
                 name=line.name,
                 mode="lines",
                 line_dash=_DASHES[line.dash % len(_DASHES)],
@@ -68,7 +70,7 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     """
     traces = [
         Box(
-            y=(np.array(values) * factor_of(unit)).round(6).tolist(),
+            y=_told(np.array(values) * factor_of(unit)),
             name=f"{name}: {len(values)}",
             boxpoints="all",
             jitter=0.5,
@@ -91,3 +93,8 @@ def _arranged(plot: Figure, x: str, y: str) -> Figure:
         hovermode="x unified",
         legend={"orientation": "h", "y": -0.25, "yanchor": "top"},
     )
+
+
+def _told(values: NDArray[np.float64]) -> list[float | None]:
+    """Return values with the digits that a chart shows; a gap where there is none."""
+    return [None if math.isnan(value) else float(f"{value:.7g}") for value in values.tolist()]

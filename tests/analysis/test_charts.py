@@ -1,0 +1,57 @@
+"""Charts of a page show what the figures show."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from evoframe import run
+from evoframe.analysis.charts import finals_chart, lines_chart
+from evoframe.analysis.lines import Line, lines_of_run
+from evoframe.analysis.page import Chart
+from evoframe.analysis.study_data import View
+from evoframe.study.rows import Row
+
+
+def row(number: int, score: float) -> Row:
+    return Row({"aggregator": "am"}, number, 1, "", "", score, score, score, 1, 1, 1.0, "")
+
+
+def test_a_line_is_drawn_over_its_band_in_its_colour() -> None:
+    values, low, high = (np.array([start, start + 1.0]) for start in (1.0, 0.5, 2.0))
+    band, line = lines_chart([Line("AM: 3", values, 4, 1, (low, high))], "score (mm)").data
+    assert list(band.x) == [0, 1, 1, 0]
+    assert list(band.y) == [2.0, 3.0, 1.5, 0.5]
+    assert (list(line.x), list(line.y)) == ([0, 1], [1.0, 2.0])
+    assert line.meta == band.meta == {"colour": 4}
+    assert line.legendgroup == band.legendgroup == line.name == "AM: 3"
+    assert line.line.dash == "dash"
+
+
+def test_what_is_missing_is_a_gap() -> None:
+    plot = lines_chart([Line("a", np.array([math.nan, 1.0]), 0, 0)], "")
+    assert list(plot.data[0].y) == [None, 1.0]
+    assert "NaN" not in Chart("", plot).json
+
+
+def test_every_run_has_a_point_in_millimetres() -> None:
+    view = View("n = 2", "aggregator", {"AM": [row(0, 0.005), row(1, 0.0051)], "WM": [row(0, 0.006)]})
+    first, second = finals_chart(view, "score", "m").data
+    assert (first.name, list(first.y), first.boxpoints) == ("AM: 2", [5.0, 5.1], "all")
+    assert (second.name, list(second.y)) == ("WM: 1", [6.0])
+
+
+def test_the_lines_of_a_run_are_those_of_its_record(tmp_path: Path) -> None:
+    made = run("quick", out=tmp_path / "r", run={"generations": 2})
+    lines = {line.name: line.values for line in lines_of_run(made, "m")}
+    for name in ("morphology", "controller"):
+        rows = [row for row in made.turns if row["population"] == name]
+        for what in ("best", "mean"):
+            assert lines[f"{name}: {what} fitness"] == pytest.approx([1000 * row[what] for row in rows])
+    best = lines["best pair simulated"]
+    assert len(best) == 3
+    assert (np.diff(best) >= 0).all()
+    assert best[-1] == pytest.approx(1000 * made.champion.score)
