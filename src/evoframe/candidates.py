@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import attrs
 
+from evoframe.blame import blaming
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
+from evoframe.files import is_file, shown_name
 from evoframe.jobs import Job, read_job
 from evoframe.layers import Layer
 from evoframe.measurement import Candidate, can_draw, can_publish
@@ -71,7 +73,10 @@ def read_candidates(
         InputError: Something cannot be read, or what was read does not fit together; says what and why.
         ConfigurationError: It cannot be simulated like this.
     """
-    reader = _Reader(preset, overrides, plugins, several=sum(map(_is_study, sources)) > 1)
+    studies = [path for path in sources if _is_study(path)]
+    alike = len({shown_name(path) for path in studies}) < len(studies)
+    names = {path: _text(path) if alike else shown_name(path) for path in studies} if len(studies) > 1 else {}
+    reader = _Reader(preset, overrides, plugins, names)
     parts = [part for path in sources for part in reader.parts(path)]
     if published:
         config = parts[0].config if parts else _config(preset, overrides, plugins)
@@ -93,12 +98,12 @@ def read_candidates(
 
 @attrs.frozen
 class _Reader:
-    """Reads what a person names, one after the other; *several* is whether more than one is a study."""
+    """Reads what a person names, one after the other; *studies* are the names of several studies."""
 
     preset: str | None
     overrides: Sequence[str | Layer]
     plugins: Plugins
-    several: bool = attrs.field(kw_only=True)
+    studies: Mapping[Path, str]
 
     def parts(self, path: Path) -> Iterator[_Part]:
         if _is_study(path):
@@ -118,21 +123,19 @@ class _Reader:
         for planned in sorted(finished, key=lambda planned: study.cells.index(planned.cell)):
             directory, own = planned.directory, [] if self.preset else [_executor(planned)]
             job = self._job(directory, own)
-            body = Candidate(str(directory), self._group(planned, path), job.designs[0], str(directory))
-            yield _Part(str(path), job.config, (body,))
+            label = _text(directory)
+            body = Candidate(label, self._group(planned, path), job.designs[0], label)
+            yield _Part(_text(path), job.config, (body,))
 
     def _group(self, planned: Planned, path: Path) -> str:
         name = name_of({key: shown(value) for key, value in planned.cell.settings})
         if not name:
-            return str(path)
-        return f"{path.name}: {name}" if self.several else name
+            return _text(path)
+        return f"{self.studies[path]}: {name}" if path in self.studies else name
 
 
 def _is_study(path: Path) -> bool:
-    try:
-        return (path / STUDY_FILE).is_file()
-    except ValueError:  # a name that no file can have, as whoever reads it says
-        return False
+    return is_file(path / STUDY_FILE)
 
 
 def _executor(planned: Planned) -> Layer:
@@ -142,12 +145,17 @@ def _executor(planned: Planned) -> Layer:
 
 def _of_job(job: Job) -> _Part:
     """Return the bodies of a run or file, each on its own; one that is alone in a file has its path."""
-    labels = [str(job.path) if label == job.path.name else label for label in job.labels]
+    named = _text(job.path)
+    labels = [named if label in (job.path.name, str(job.path)) else label for label in job.labels]
     bodies = [
-        Candidate(label, label, design, str(job.path))
-        for label, design in zip(labels, job.designs, strict=True)
+        Candidate(label, label, design, named) for label, design in zip(labels, job.designs, strict=True)
     ]
-    return _Part(str(job.path), job.config, tuple(bodies))
+    return _Part(named, job.config, tuple(bodies))
+
+
+def _text(path: Path) -> str:
+    """Return a path as it stands in files: text, whatever its bytes are."""
+    return str(path).encode("utf-8", "replace").decode()
 
 
 def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
@@ -159,7 +167,8 @@ def _published(config: RunConfig) -> _Part:
     if not can_publish(simulator):
         raise ConfigurationError(f"the simulator '{config.simulator.name}' brings no published bodies")
     named = f"published with {config.simulator.name}"
-    bodies = [Candidate(label, label, design, named) for label, design in simulator.published()]
+    with blaming("simulator"):
+        bodies = [Candidate(label, label, design, named) for label, design in simulator.published()]
     return _Part(named, config, tuple(bodies))
 
 

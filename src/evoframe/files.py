@@ -7,7 +7,7 @@ from pathlib import Path
 
 from evoframe.errors import InputError
 
-__all__ = ["read_text", "refuse_links"]
+__all__ = ["is_directory", "is_file", "read_text", "refuse_links", "shown_name"]
 
 
 def read_text(path: Path, largest: int) -> str:
@@ -32,6 +32,43 @@ def read_text(path: Path, largest: int) -> str:
         raise InputError(f"{path}: is not UTF-8 text") from error
     except ValueError as error:  # a name that no file can have
         raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
+
+
+def is_directory(path: Path) -> bool:
+    """Return whether there is a directory.
+
+    Raises:
+        InputError: There is nothing, or it cannot be looked at.
+    """
+    return stat.S_ISDIR(_looked_at(path))
+
+
+def is_file(path: Path) -> bool:
+    """Return whether there is a file; not if there is nothing.
+
+    Raises:
+        InputError: It cannot be looked at.
+    """
+    try:
+        return stat.S_ISREG(_looked_at(path))
+    except InputError as error:
+        if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
+            return False
+        raise
+
+
+def _looked_at(path: Path) -> int:
+    try:
+        return path.stat().st_mode
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except ValueError as error:  # a name that no file can have
+        raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
+
+
+def shown_name(path: Path) -> str:
+    """Return what a directory is called in a title, however a person named it: text that can be written."""
+    return path.resolve().name.encode("utf-8", "replace").decode()
 
 
 def refuse_links(directory: Path) -> None:

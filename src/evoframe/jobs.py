@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import attrs
 from evoframe.champion import read_champion
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
+from evoframe.files import is_directory
 from evoframe.layers import Layer, read_layers
 from evoframe.loading import Run, load_run
 from evoframe.plugins import Plugins
@@ -64,7 +64,7 @@ def read_job(
         InputError: The file cannot be read, or is something else.
         ConfigurationError: It cannot be simulated like this.
     """
-    if _is_directory(path):
+    if is_directory(path):
         if not runs:
             raise InputError(f"{path}: cannot be read: Is a directory; that of a run has a champion.json")
         return _of_run(path, preset, overrides, plugins)
@@ -80,15 +80,6 @@ def naming(path: Path) -> Iterator[None]:
         yield
     except (ConfigurationError, InputError) as error:
         raise type(error)(f"{path}: {error}") from error
-
-
-def _is_directory(path: Path) -> bool:
-    try:
-        return stat.S_ISDIR(path.stat().st_mode)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:  # a name that no file can have
-        raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
 
 
 def _of_run(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:

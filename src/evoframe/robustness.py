@@ -67,9 +67,9 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
     unit = str(getattr(config.objective.component, "unit", ""))
     try:
         return Setting(seed, controllers, unit, config.simulation(), tuple(bodies))
-    except ValueError as error:
+    except (TypeError, ValueError) as error:
         raise ConfigurationError(
-            f"expected 1 or more controllers and a seed from 0 up, found {controllers} and {seed}"
+            f"expected 1 or more controllers and a seed from 0 up, found {controllers!r} and {seed!r}"
         ) from error
 
 

@@ -214,3 +214,8 @@ def test_names_that_are_not_as_many_are_refused() -> None:
 def test_a_network_too_large_for_a_figure_is_refused() -> None:
     with pytest.raises(ValueError, match="301 nodes and 301 links are too many for a figure"):
         drawn(chain(300))
+
+
+def test_without_names_inputs_and_outputs_are_numbered() -> None:
+    shown = [text.get_text() for text in network(graph_of(link(-1, 0)), (), ()).axes[0].texts]
+    assert {text.replace("\n", " ") for text in shown} >= {"input 1", "input 2", "tanh", "output 1"}

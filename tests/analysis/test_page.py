@@ -7,6 +7,7 @@ import json
 import re
 from typing import Any
 
+import attrs
 import numpy as np
 import pandas as pd
 import pytest
@@ -68,11 +69,33 @@ def test_sections_have_links_and_those_without_anything_are_left_out() -> None:
     assert "Nothing" not in text
 
 
+def test_sections_of_one_name_have_data_of_their_own() -> None:
+    sections = [Section("n = 2", [Chart(str(n), Figure([Scatter(y=[n])]))]) for n in (1, 2)]
+    text = page("t", "l", sections).decode()
+    own = text[: text.index("</main>")]
+    ids = re.findall(r' id="([^"]+)"', own)
+    assert len(ids) == len(set(ids))
+    for source in re.findall(r'data-source="([^"]+)"', own):
+        assert source in ids
+
+
+def test_what_plotly_would_read_as_markup_is_text() -> None:
+    geometry = moving(0.0, 0.1)
+    part = attrs.evolve(geometry.parts[0], name="<a href='x'>y</a> & z")
+    [drawn] = told(Motion("", attrs.evolve(geometry, parts=(part,)), "tip"))["parts"]
+    assert drawn["name"] == "&lt;a href='x'&gt;y&lt;/a&gt; &amp; z"
+
+
 def test_tables_show_four_digits_and_a_dash_for_nothing() -> None:
     frame = pd.DataFrame({"name": ["a", "b"], "value": [1.23456, float("nan")], "n": [30, 1]})
     rows = [[cell.text for cell in row] for row in Table("", frame).rows]
     assert rows == [["a", "1.235", "30"], ["b", "-", "1"]]
     assert [cell.is_number for cell in Table("", frame).rows[0]] == [False, True, True]
+
+
+def test_an_empty_table_is_left_out() -> None:
+    text = page("t", "l", [Section("Nothing", [Table("caption", pd.DataFrame(columns=["a"]))])]).decode()
+    assert "caption" not in text[text.index("<main>") : text.index("</main>")]
 
 
 def test_the_same_content_gives_the_same_bytes() -> None:

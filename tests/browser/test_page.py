@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -71,6 +72,28 @@ def test_play_moves_the_body_and_pause_stops_it(run_page: Path, opened: Callable
     assert stopped != at_rest
     page.wait_for_timeout(300)
     assert meshes(page) == stopped
+
+
+def test_play_begins_where_time_stands(run_page: Path, opened: Callable[..., Any]) -> None:
+    """The moment of the first picture may be before the click."""
+    page = opened(run_page).page
+    moved(page)
+    page.evaluate(
+        """() => {
+            const output = document.querySelector(".motion .told");
+            window.said = [];
+            const note = () => window.said.push(output.textContent);
+            new MutationObserver(note).observe(output, { childList: true });
+        }"""
+    )
+    for _ in range(3):
+        set_slider(page, "time", 0)
+        page.get_by_role("button", name="play").click()
+        page.wait_for_timeout(200)
+        page.get_by_role("button", name="pause").click()
+    said = page.evaluate("window.said")
+    assert len(said) > 6
+    assert all(re.fullmatch(r"0\.\d{4} s", text) for text in said)
 
 
 def test_time_is_scrubbed_to_the_end_and_back(run_page: Path, opened: Callable[..., Any]) -> None:

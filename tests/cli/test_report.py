@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 from pathlib import Path
 
 import pytest
@@ -96,7 +97,7 @@ def test_a_run_has_a_report_too(evoframe: Evoframe, tmp_path: Path) -> None:
         *VERIFIED,
     }
     assert shown.stdout.startswith("r: best pair ")
-    assert "10 turns, finished; 224 pairs, 102 of them simulated" in shown.stdout
+    assert "10 turns, 224 pairs; finished" in shown.stdout
     summary = {
         row["figure"]: row["value (m)"]
         for row in csv.DictReader(written["summary.csv"].decode().splitlines())
@@ -124,6 +125,65 @@ def test_what_its_plugins_do_not_draw_is_left_out_and_said(evoframe: Evoframe, t
         *("curves.pdf", "curves.svg", "curves.png", "summary.csv", "summary.tex", "report.html"),
     }
     assert b"Its simulator does not say what its designs look like." in written["report.html"]
+
+
+def test_what_was_measured_of_another_champion_is_not_shown(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    plugin = ("-p", toys.__file__)
+    for seed in (1, 2):
+        command = ("run", *plugin, "toy.toml", "--set", "simulator=toy-steered", "--seed", seed)
+        assert evoframe(*command, "--out", f"r{seed}").returncode == 0
+    measured = evoframe("robustness", *plugin, "r1", "--published", "--controllers", 10)
+    assert measured.returncode == 0, measured.stderr
+    assert evoframe("report", *plugin, "r1").returncode == 0
+    report = contents(tmp_path / "r1" / "report")
+    assert "violins.pdf" in report
+    assert b"Within controllers, as all bodies have the same" in report["report.html"]
+    shutil.copytree(tmp_path / "r1" / "robustness", tmp_path / "r2" / "robustness")
+    assert evoframe("report", *plugin, "r2").returncode == 0
+    report = contents(tmp_path / "r2" / "report")
+    assert "violins.pdf" not in report
+    assert b"is of other champions" in report["report.html"]
+    assert b"evoframe robustness r2 --force" in report["report.html"]
+
+
+def test_names_are_shown_as_they_are(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    plugin, name = ("-p", toys.__file__), "cost$^$ <b>&'\u00e9"
+    assert evoframe("run", *plugin, "toy.toml", "--out", name).returncode == 0
+    shown = evoframe("report", *plugin, name)
+    assert shown.returncode == 0, shown.stderr
+    page = (tmp_path / name / "report" / "report.html").read_text()
+    assert "<h1>cost$^$ &lt;b&gt;&amp;&#39;\u00e9</h1>" in page
+
+
+@pytest.mark.parametrize("name", ["config.toml", "study.toml", "robustness.json"])
+def test_a_place_of_something_else_is_refused(
+    evoframe: Evoframe, study: list[str], tmp_path: Path, name: str
+) -> None:
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / name).touch()
+    refused = evoframe("report", *study, "--out", "there")
+    assert refused.returncode == 2
+    assert f"Error: there: is no place for a report: it has a {name}" in refused.stderr
+    assert [path.name for path in (tmp_path / "there").iterdir()] == [name]
+
+
+def test_a_name_that_no_directory_can_have_is_refused(evoframe: Evoframe) -> None:
+    for command in ("report", "robustness"):
+        refused = evoframe(command, "a" * 300)
+        assert refused.returncode == 2
+        assert "cannot be read: File name too long" in refused.stderr
+
+
+def test_a_finished_run_without_its_champion_is_named(
+    evoframe: Evoframe, study: list[str], tmp_path: Path
+) -> None:
+    [path, *_] = sorted((tmp_path / "s").glob("**/champion.json"))
+    path.unlink()
+    refused = evoframe("report", *study)
+    assert refused.returncode == 2
+    assert "champion.json: cannot be read: No such file or directory" in refused.stderr
 
 
 def test_several_reports_are_written_each_in_its_place(evoframe: Evoframe, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
+from evoframe.analysis.plain import plain
 from evoframe.drawings import Geometry, GeometryPart
 
 __all__ = ["body"]
@@ -21,6 +22,7 @@ _ELEVATION, _AZIMUTH = 24.0, -62.0  # degrees; the free end, at the greatest x, 
 _LIGHT = np.array([0.30, -0.65, 0.70])  # from the front, above
 
 
+@plain
 def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
     """Return a design as it looks at one time, with what surrounds other parts translucent.
 

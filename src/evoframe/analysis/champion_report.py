@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from evoframe.analysis.bodies import body
 from evoframe.analysis.champions import ChampionData
-from evoframe.analysis.networks import network
+from evoframe.analysis.networks import TooLargeError, network
 from evoframe.analysis.page import Block, Motion, Picture, Section, Table, Words
 from evoframe.analysis.tables import verification_table
 from evoframe.analysis.units import with_unit
@@ -43,7 +43,7 @@ def drawn(data: ChampionData) -> DrawnChampion:
     for each in data.networks:
         try:
             networks[each.population] = network(each.graph, each.inputs, each.outputs, each.population)
-        except ValueError as error:  # nobody could read a network of thousands of nodes
+        except TooLargeError as error:
             undrawn[each.population] = str(error)
     return DrawnChampion(data, body(data.geometry, title) if data.geometry else None, networks, undrawn)
 

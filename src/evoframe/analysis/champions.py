@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import attrs
 
+from evoframe.blame import blaming
 from evoframe.config import RunConfig
 from evoframe.drawings import Geometry, NetworkGraph, can_be_drawn
-from evoframe.errors import InputError
+from evoframe.errors import ComponentError, InputError
 from evoframe.jobs import naming, read_job
 from evoframe.loading import Run
 from evoframe.plugins import Plugins
@@ -70,8 +72,8 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
     if run is None:
         raise InputError(f"{directory}: is no run's directory")
     simulator, objective = config.simulator.component, config.objective.component
-    with naming(directory):
-        geometry = simulator.geometry(design, _FRAMES) if can_be_drawn(simulator) else None
+    with naming(directory), blaming("simulator"):
+        geometry = _checked(simulator.geometry(design, _FRAMES)) if can_be_drawn(simulator) else None
     drawn = geometry.tracks if geometry else {}
     return ChampionData(
         score=run.champion.score,
@@ -81,6 +83,20 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
         networks=tuple(_networks(run, config)),
         verification=run.verification,
     )
+
+
+def _checked(geometry: Any) -> Geometry:
+    """Return what a simulator gave if it can be drawn.
+
+    Raises:
+        TypeError: It is something else.
+        ValueError: There is nothing to see.
+    """
+    if not isinstance(geometry, Geometry):
+        raise TypeError(f"geometry() gave {type(geometry).__name__}, expected a Geometry")
+    if not any(len(part.faces) for part in geometry.parts):
+        raise ValueError("geometry() gave nothing that can be seen")
+    return geometry
 
 
 def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
@@ -94,5 +110,7 @@ def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
             drawn = graph(genome, encoder.inputs, encoder.outputs)
         except ValueError as error:
             raise InputError(f"{run.directory}: the champion's genome of '{name}': {error}") from error
+        except Exception as error:
+            raise ComponentError(f"populations.{name}.evolver", f"{type(error).__name__}: {error}") from error
         inputs, outputs = (tuple(getattr(encoder, key, ())) for key in ("input_names", "output_names"))
         yield DrawnNetwork(name, drawn, inputs, outputs)

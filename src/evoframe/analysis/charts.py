@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ def lines_chart(drawn: Sequence[Line], label: str) -> Figure:
             Scatter(
                 x=generations.tolist(),
                 y=_told(line.values),
-                name=line.name,
+                name=escape(line.name, quote=False),
                 mode="lines",
                 line_dash=_DASHES[line.dash % len(_DASHES)],
                 legendgroup=line.name,
@@ -71,7 +72,7 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     traces = [
         Box(
             y=_told(np.array(values) * factor_of(unit)),
-            name=f"{name}: {len(values)}",
+            name=escape(f"{name}: {len(values)}", quote=False),
             boxpoints="all",
             jitter=0.5,
             pointpos=-1.6,
@@ -87,8 +88,8 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
 def _arranged(plot: Figure, x: str, y: str) -> Figure:
     return plot.update_layout(
         template=None,
-        xaxis={"title": {"text": x}},
-        yaxis={"title": {"text": y}},
+        xaxis={"title": {"text": escape(x, quote=False)}},  # plotly reads some HTML
+        yaxis={"title": {"text": escape(y, quote=False)}},
         margin={"l": 60, "r": 10, "t": 10, "b": 50},
         hovermode="x unified",
         legend={"orientation": "h", "y": -0.25, "yanchor": "top"},

@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evoframe.analysis.lines import Line, lines_of_view
+from evoframe.analysis.plain import plain
 from evoframe.analysis.statistics import Comparison
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, axis_title, factor_of
@@ -39,6 +40,7 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     return lines(lines_of_view(view, yardstick, unit), label, view.title, f"{view.key}: runs")
 
 
+@plain
 def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = None) -> Figure:
     """Return lines over generations.
 
@@ -75,6 +77,7 @@ def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = No
     return figure
 
 
+@plain
 def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Comparison | None = None) -> Figure:
     """Return every run's final value, with box plots, and letters: what shares one is not different.
 
@@ -109,6 +112,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     return figure
 
 
+@plain
 def ranks(comparison: Comparison, title: str) -> Figure:
     """Return the mean rank of each group on a line, the best at the right; bars join what is not different.
 

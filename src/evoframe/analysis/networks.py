@@ -16,9 +16,10 @@ from matplotlib.path import Path
 from matplotlib.textpath import text_to_path
 
 from evoframe.analysis.layered import Layout, effective, layered
+from evoframe.analysis.plain import plain
 from evoframe.drawings import NetworkGraph, NetworkLink
 
-__all__ = ["network"]
+__all__ = ["TooLargeError", "network"]
 
 POSITIVE, NEGATIVE = "#0072B2", "#D55E00"  # of Okabe and Ito, as in the figures of a study
 INK, GREY, PALE = "#202020", "#606060", "#B0B0B0"
@@ -38,6 +39,11 @@ _LONGEST = 8  # letters of a label in one line
 _MOST = 500  # nodes and links: seconds, and more than anybody can read
 
 
+class TooLargeError(ValueError):
+    """A network has more nodes and links than anybody can read in a figure."""
+
+
+@plain
 def network(
     graph: NetworkGraph, input_names: Sequence[str], output_names: Sequence[str], title: str = ""
 ) -> Figure:
@@ -50,19 +56,21 @@ def network(
 
     Args:
         graph: The network.
-        input_names: One name for each input.
-        output_names: One name for each output.
+        input_names: One name for each input; with none they are numbered.
+        output_names: One name for each output; with none they are numbered.
         title: Of the figure.
 
     Raises:
-        ValueError: The names are not as many as the inputs and outputs, or the network is too large for a
-            figure: it has more than 500 nodes and links.
+        TooLargeError: The network has more than 500 nodes and links.
+        ValueError: The names are not as many as the inputs and outputs.
     """
-    _check_names("inputs", graph.inputs, input_names)
-    _check_names("outputs", graph.outputs, output_names)
+    input_names = _names("input", graph.inputs, input_names)
+    output_names = _names("output", graph.outputs, output_names)
     drawn = effective(graph)
     if len(drawn.labels) + len(drawn.links) > _MOST:
-        raise ValueError(f"{len(drawn.labels)} nodes and {len(drawn.links)} links are too many for a figure")
+        raise TooLargeError(
+            f"{len(drawn.labels)} nodes and {len(drawn.links)} links are too many for a figure"
+        )
     layout = layered(drawn)
     labels = {**dict(sorted(drawn.labels.items())), **dict(zip(graph.inputs, input_names, strict=True))}
     wrapped = {node: _wrapped(label) for node, label in labels.items()}
@@ -76,9 +84,12 @@ def network(
     return figure
 
 
-def _check_names(what: str, nodes: Sequence[int], names: Sequence[str]) -> None:
+def _names(what: str, nodes: Sequence[int], names: Sequence[str]) -> Sequence[str]:
+    if not names:
+        return [f"{what} {number}" for number, _ in enumerate(nodes, start=1)]
     if len(names) != len(nodes):
-        raise ValueError(f"{len(names)} names for {len(nodes)} {what}: {', '.join(names)}")
+        raise ValueError(f"{len(names)} names for {len(nodes)} {what}s: {', '.join(names)}")
+    return names
 
 
 @attrs.frozen
@@ -197,7 +208,6 @@ class _Drawing:
             size=_SIZE,
             va="center_baseline",
             linespacing=1.0,
-            parse_math=False,
             zorder=3,
             **style,
         )
@@ -253,7 +263,7 @@ def _figure(page: _Page, title: Sequence[str], note: str, legend: Sequence[Line2
     figure = Figure(figsize=(page.width, height))
     axes = figure.add_axes((0, below / height, 1, (page.bottom - page.top) / height), frameon=False)
     axes.set(xlim=(0, page.width), ylim=(page.bottom, page.top), xticks=[], yticks=[])
-    axes.set_title("\n".join(title), size=9, pad=72 * (_MARGIN + _NOTE * bool(note)), parse_math=False)
+    axes.set_title("\n".join(title), size=9, pad=72 * (_MARGIN + _NOTE * bool(note)))
     figure.text(0.5, (height - above + _MARGIN) / height, note, ha="center", size=7, color=GREY)
     if legend:
         figure.legend(handles=legend, loc="lower center", ncols=n_columns, frameon=False, fontsize=7)

@@ -6,8 +6,8 @@ import base64
 import functools
 import json
 import math
-import re
 from collections.abc import Mapping, Sequence
+from html import escape
 from importlib import resources
 from typing import Any, ClassVar, TypeAlias
 
@@ -20,6 +20,7 @@ from plotly.graph_objects import Figure as Plot
 from plotly.offline import get_plotlyjs
 
 from evoframe._version import __version__
+from evoframe.analysis.slugs import slugs
 from evoframe.drawings import Geometry
 
 __all__ = ["Block", "Chart", "Motion", "Picture", "Section", "Source", "Table", "Words", "page"]
@@ -104,6 +105,11 @@ class Table:
         """Its cells."""
         return [[_cell(value) for value in row] for row in self.frame.itertuples(index=False)]
 
+    @property
+    def numeric(self) -> list[bool]:
+        """Whether each column has numbers, which a reader compares from the right."""
+        return [all(row[column].is_number for row in self.rows) for column in range(len(self.columns))]
+
 
 @attrs.frozen
 class Motion:
@@ -136,11 +142,6 @@ class Section:
     title: str
     blocks: Sequence[Block]
 
-    @property
-    def anchor(self) -> str:
-        """What a link to it is called."""
-        return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
-
 
 def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
     """Return a page as the bytes of an HTML file.
@@ -148,18 +149,25 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
     Args:
         title: Its heading.
         lead: A sentence below it.
-        sections: What it shows; those without a block are left out.
+        sections: What it shows; empty tables, and sections without anything else, are left out.
     """
+    full = [attrs.evolve(section, blocks=[*filter(_has_content, section.blocks)]) for section in sections]
+    shown = [section for section in full if section.blocks]
+    anchors = slugs(section.title.lower() for section in shown)
     text = _template().render(
         title=title,
         lead=lead,
-        sections=[section for section in sections if section.blocks],
+        sections=list(zip(anchors, shown, strict=True)),
         version=__version__,
         style=_file("page.css"),
         script=_file("page.js"),
         plotly=get_plotlyjs(),
     )
     return text.encode()
+
+
+def _has_content(block: Block) -> bool:
+    return not isinstance(block, Table) or len(block.frame) > 0
 
 
 @functools.cache
@@ -204,7 +212,7 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
         "step": step,
         "parts": [
             {
-                "name": part.name,
+                "name": escape(part.name, quote=False),  # plotly reads some HTML
                 "colour": part.colour,
                 "opacity": part.opacity,
                 "faces": part.faces,
@@ -214,7 +222,7 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
             for part, moved in zip(geometry.parts, moves, strict=True)
         ],
         "bounds": _bounds([part.vertices for part in geometry.parts]),
-        "track": None if points is None else {"name": track, "positions": points},
+        "track": None if points is None else {"name": escape(str(track), quote=False), "positions": points},
         "exaggeration": exaggeration,
         "most": max(10, int(_MOST * exaggeration)),
     }

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evoframe.analysis.robustness import SETTING_FILE
 from evoframe.analysis.run_report import write_run_report
 from evoframe.analysis.statistics import Correction
 from evoframe.analysis.study_report import write_study_report
 from evoframe.analysis.writing import Written
 from evoframe.errors import InputError
+from evoframe.files import is_file
 from evoframe.plugins import Plugins
 from evoframe.store import CONFIG_FILE
 from evoframe.study.conduct import STUDY_FILE
@@ -27,13 +29,24 @@ def write_report(directory: Path, target: Path, plugins: Plugins, correction: Co
 
     Raises:
         ConfigurationError: The directory cannot be read with these plugins.
-        InputError: It is of neither, has nothing to report yet, or is damaged; or *target* cannot be made.
+        InputError: It is of neither, has nothing to report yet, or is damaged; or *target* cannot be made, or
+            is a place of something else.
         RunError: The report cannot be written.
     """
-    if (directory / STUDY_FILE).is_file():
+    _refuse_occupied(target)
+    if is_file(directory / STUDY_FILE):
         return write_study_report(directory, target, plugins, correction)
-    if (directory / CONFIG_FILE).is_file():
+    if is_file(directory / CONFIG_FILE):
         return write_run_report(directory, target, plugins, correction)
     raise InputError(
         f"{directory}: is no directory of a run or a study: there is no {CONFIG_FILE} and no {STUDY_FILE}"
     )
+
+
+def _refuse_occupied(target: Path) -> None:
+    """Refuse to write between the files of a run, a study or a measurement, some of which have our names."""
+    for name in (CONFIG_FILE, STUDY_FILE, SETTING_FILE):
+        if is_file(target / name):
+            raise InputError(
+                f"{target}: is no place for a report: it has a {name}; choose another with --out"
+            )

@@ -18,7 +18,7 @@ from evoframe.analysis.tables import versions_table
 from evoframe.analysis.units import axis_title, with_unit
 from evoframe.analysis.writing import Written, prepare_directory, write_bytes, write_figure, write_table
 from evoframe.champion import LARGEST_DOCUMENT
-from evoframe.files import read_text
+from evoframe.files import read_text, shown_name
 from evoframe.loading import Run, load_run
 from evoframe.plugins import Plugins
 from evoframe.store import CONFIG_FILE
@@ -46,12 +46,12 @@ def write_run_report(
     """
     run, champion = load_run(directory), load_champion(directory, plugins)
     curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
-    title, lead, with_figures = directory.absolute().name, _lead(run, champion), drawn(champion)
+    title, lead, with_figures = shown_name(directory), _lead(run, champion), drawn(champion)
     prepare_directory(target)
     written = write_figure(lines(curves, label, title), target / "curves")
     written += write_champion(with_figures, target)
     written += write_table(_summary(run, champion), target / "summary")
-    more, robustness = robustness_report(directory, target, correction)
+    more, robustness = robustness_report(directory, target, plugins, correction)
     written += more
     champion_first, *others = _sections(run, with_figures, Chart(_CAPTION, lines_chart(curves, label)))
     data = page(title, lead, [champion_first, *robustness, *others])
@@ -71,10 +71,9 @@ def _sections(run: Run, champion: DrawnChampion, progress: Chart) -> list[Sectio
 
 def _lead(run: Run, champion: ChampionData) -> str:
     work, score = run.workload, with_unit(champion.score, champion.unit)
-    pairs, simulated = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
+    pairs = sum(row["pairs"] for row in work)
     state = "finished" if run.finished else "not finished yet"
-    done = f"{len(work) - 1:,} turns, {state}; {pairs:,} pairs, {simulated:,} of them simulated"
-    return f"best pair {score}; {done}"
+    return f"best pair {score}; {len(work) - 1:,} turns, {pairs:,} pairs; {state}"
 
 
 def _summary(run: Run, champion: ChampionData) -> pd.DataFrame:

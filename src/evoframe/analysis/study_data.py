@@ -13,7 +13,7 @@ import pandas as pd
 from evoframe.champion import LARGEST_DOCUMENT
 from evoframe.discovery import discover
 from evoframe.errors import InputError
-from evoframe.files import read_text
+from evoframe.files import is_file, read_text, shown_name
 from evoframe.plugins import Plugins
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
@@ -127,7 +127,7 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         InputError: It is no study's directory, or one of its runs is damaged.
     """
     directory = Path(directory)
-    if not (directory / STUDY_FILE).is_file():
+    if not is_file(directory / STUDY_FILE):
         raise InputError(f"{directory}: is no study's directory: there is no {STUDY_FILE}")
     study = read_study(directory / STUDY_FILE, (), plugins or discover())
     elsewhere = [planned.directory for planned in imported_rows(study, directory)]
@@ -138,7 +138,7 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         (row.score, run.directory) for row, run in zip(rows, finished, strict=True) if run.directory.is_dir()
     ]
     return StudyData(
-        label=directory.absolute().name,
+        label=shown_name(directory),
         keys=tuple(study.grid),
         unit=_unit(study),
         planned=len(statuses),

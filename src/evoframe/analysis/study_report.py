@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from evoframe.analysis.figures import curves, finals, ranks
 from evoframe.analysis.lines import lines_of_view
 from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
 from evoframe.analysis.robustness import robustness_report
+from evoframe.analysis.slugs import slugs
 from evoframe.analysis.statistics import Comparison, Correction
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick, load_study
 from evoframe.analysis.tables import (
@@ -66,7 +66,7 @@ def write_study_report(
     champion = drawn(load_champion(data.best_run, plugins)) if data.best_run else None
     if champion is not None:
         written += write_champion(champion, target)
-    more, robustness = robustness_report(directory, target, correction)
+    more, robustness = robustness_report(directory, target, plugins, correction)
     words = _words(data, found)
     written += [*more, write_bytes(words.encode(), target / "conclusions.txt")]
     rankings, *compared = _compared_sections(data, found, tables["ranking"])
@@ -99,10 +99,10 @@ def _shown(data: StudyData, found: Compared) -> Iterator[_Shown]:
 
 
 def _figures(data: StudyData, found: Compared, directory: Path) -> list[Path]:
-    written = []
-    for shown in _shown(data, found):
+    written, all_shown = [], list(_shown(data, found))
+    names = slugs(f"{shown.yardstick} {shown.view.title}" for shown in all_shown)
+    for shown, name in zip(all_shown, names, strict=True):
         view, yardstick, comparison = shown.view, shown.yardstick, shown.comparison
-        name = re.sub(r"[^A-Za-z0-9.]+", "-", f"{yardstick} {view.title}").strip("-")
         written += write_figure(curves(view, yardstick, data.unit), directory / f"curves-{name}")
         written += write_figure(finals(view, yardstick, data.unit, comparison), directory / f"finals-{name}")
         if comparison is not None:

@@ -111,9 +111,9 @@ def verification_table(verification: Verification) -> pd.DataFrame:
 
 
 def versions_table(provenance: Mapping[str, Any]) -> pd.DataFrame:
-    """Return a line for each thing that a run says it was made by."""
+    """Return a line for each thing that a run says it was made by; none if it says nothing."""
     found = [
         (key, ", ".join(map(str, value)) if isinstance(value, list) else str(value))
-        for key, value in leaves(provenance)
+        for key, value in (leaves(provenance) if provenance else ())
     ]
     return pd.DataFrame(found, columns=["what", "which"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -37,13 +38,15 @@ class Written:
 
 
 def prepare_directory(directory: Path) -> Path:
-    """Make a directory for a report, if it is not there.
+    """Make a directory for a report, if it is not there, and see that it can be written to.
 
     Raises:
-        InputError: It cannot be made.
+        InputError: It cannot be made, or not be written to.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=directory):
+            pass
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a report: {error.strerror}") from error
     return directory

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import attrs
@@ -14,14 +15,17 @@ from rich.console import Console
 
 from evoframe.config import RunConfig
 from evoframe.discovery import discover
+from evoframe.errors import InputError
 from evoframe.layers import Layer, layer_of, preset_names
 from evoframe.plugins import Plugins
 
 __all__ = [
     "common_options",
     "configuration_argument",
+    "correction_option",
     "is_quiet",
     "modules_of",
+    "needing_extra",
     "output",
     "plugins_of",
     "preset_option",
@@ -172,6 +176,35 @@ def set_option(function: F) -> F:
         metavar="KEY=VALUE",
         help="Override a setting; the value is TOML, a bare word is a string. Repeatable.",
     )(function)
+
+
+def correction_option(function: F) -> F:
+    """Add ``--correction C`` to a command that compares pairs of groups."""
+    return click.option(
+        "--correction",
+        type=click.Choice(["holm", "bonferroni", "fdr_bh", "none"]),
+        default="holm",
+        show_default=True,
+        help="Of the p-values for the number of pairs; the paper uses none.",
+    )(function)
+
+
+@contextmanager
+def needing_extra(extra: str, what: str) -> Iterator[None]:
+    """Say what to install where an import fails, for it is of an extra.
+
+    Args:
+        extra: The extra.
+        what: What it is for, in words.
+
+    Raises:
+        InputError: A module is not installed.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        name = str(error.name).partition(".")[0]
+        raise InputError(f"{name} is not installed; for {what}: pip install 'evoframe[{extra}]'") from error
 
 
 def _workers_layer(_: click.Context, __: click.Parameter, workers: int | None) -> list[Layer]:

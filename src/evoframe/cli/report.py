@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from evoframe.cli.context import common_options, is_quiet, plugins_of
+from evoframe.cli.context import common_options, correction_option, is_quiet, needing_extra, plugins_of
 from evoframe.errors import InputError
 
 __all__ = ["report"]
@@ -27,13 +27,7 @@ Examples:
     metavar="DIR",
     help="Where to, if it is one report; by default DIR/report.",
 )
-@click.option(
-    "--correction",
-    type=click.Choice(["holm", "bonferroni", "fdr_bh", "none"]),
-    default="holm",
-    show_default=True,
-    help="Of the p-values for the number of pairs; the paper uses none.",
-)
+@correction_option
 @common_options
 @click.pass_context
 def report(ctx: click.Context, directories: tuple[Path, ...], out: Path | None, correction: str) -> None:
@@ -43,11 +37,8 @@ def report(ctx: click.Context, directories: tuple[Path, ...], out: Path | None, 
     combination of the others has figures and tests of its own, on two yardsticks: the score of the best pair
     that was simulated, and the averaged fitness. The page, report.html, has all in one file.
     """
-    try:
+    with needing_extra("report", "reports"):
         from evoframe.analysis.report import write_report  # noqa: PLC0415 - takes a second, and an extra
-    except ModuleNotFoundError as error:
-        name = str(error.name).partition(".")[0]
-        raise InputError(f"{name} is not installed; for reports: pip install 'evoframe[report]'") from error
     if out is not None and len(directories) > 1:
         raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
     for directory in directories:

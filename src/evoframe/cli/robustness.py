@@ -17,14 +17,15 @@ from rich.table import Table
 from evoframe.candidates import read_candidates
 from evoframe.cli.context import (
     common_options,
+    correction_option,
     is_quiet,
+    needing_extra,
     output,
     plugins_of,
     preset_option,
     set_option,
     workers_option,
 )
-from evoframe.errors import InputError
 from evoframe.layers import Layer
 from evoframe.robustness import measure, setting_of
 
@@ -65,13 +66,7 @@ Examples:
 )
 @click.option("--force", is_flag=True, help="Replace what was measured otherwise.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, with all scores.")
-@click.option(
-    "--correction",
-    type=click.Choice(["holm", "bonferroni", "fdr_bh", "none"]),
-    default="holm",
-    show_default=True,
-    help="Of the p-values for the number of pairs; the paper uses none.",
-)
+@correction_option
 @preset_option
 @set_option
 @workers_option
@@ -97,13 +92,9 @@ def robustness(
     the finished runs of each configuration are a group. A FILE is what evoframe simulate takes. Figure,
     tables, scores and conclusions are written as files.
     """
-    try:
+    with needing_extra("report", "statistics and figures"):
         from evoframe.analysis import robustness as analysis  # noqa: PLC0415 - takes a second, and an extra
         from evoframe.analysis.writing import prepare_directory  # noqa: PLC0415
-    except ModuleNotFoundError as error:
-        raise InputError(
-            f"{error.name} is not installed; for statistics and figures: pip install 'evoframe[report]'"
-        ) from error
     settings: list[str | Layer] = [*overrides, *workers]
     candidates = read_candidates(sources, preset, settings, plugins_of(ctx), published=published)
     setting = setting_of(candidates, seed, controllers)

@@ -108,10 +108,17 @@ def row_of(planned: Planned) -> Row:
         pairs=sum(row["pairs"] for row in work),
         simulations=sum(row["simulations"] for row in work),
         seconds=round(sum(row["seconds"] for row in work), 3),
-        champion=hashlib.sha256((run.directory / CHAMPION_FILE).read_bytes()).hexdigest(),
+        champion=_digest_of(run.directory / CHAMPION_FILE),
         fitness_curve=fitness,
         score_curve=score,
     )
+
+
+def _digest_of(path: Path) -> str:
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
 
 
 def _fitness_curve(run: Run) -> tuple[float, ...]:

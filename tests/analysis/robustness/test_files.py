@@ -116,10 +116,10 @@ class TestOccupied:
                 lambda s: attrs.evolve(s, simulation={"simulator": {"name": "vox"}}),
                 "simulation.simulator.name: 'toy-steered' then, 'vox' now",
             ),
-            (lambda s: attrs.evolve(s, bodies=s.bodies[:2]), "order of bodies: 'A, B, C' then, 'A, B' now"),
+            (lambda s: attrs.evolve(s, bodies=s.bodies[:2]), " in group 2' then, 'nothing' now"),
             (
                 lambda s: attrs.evolve(s, bodies=(*s.bodies[:2], attrs.evolve(s.bodies[2], digest="0"))),
-                " in Y' then, '0 in Y' now",
+                " in group 2' then, '0 in group 2' now",
             ),
         ],
     )
@@ -131,6 +131,14 @@ class TestOccupied:
             refuse_another(written, other)
         assert line in str(caught.value)
         refuse_another(written, other, force=True)
+
+    def test_by_the_same_bodies_under_other_names_is_no_other(
+        self, measured: Robustness, written: Path
+    ) -> None:
+        moved = [attrs.evolve(body, label=f"moved/{body.label}") for body in measured.setting.bodies]
+        refuse_another(written, attrs.evolve(measured.setting, bodies=tuple(moved)))
+        with pytest.raises(InputError, match=r"bodies\.1: '.* in group 1' then, '.* in group 1' now"):
+            refuse_another(written, attrs.evolve(measured.setting, bodies=tuple(reversed(moved))))
 
     def test_by_a_damaged_measurement_is_refused_unless_forced(
         self, measured: Robustness, written: Path
@@ -151,6 +159,13 @@ class TestDamage:
     def test_of_nothing_is_said(self, tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"is no measurement of robustness: there is no robustness.json"):
             read_robustness(tmp_path)
+
+    def test_of_scores_that_belong_to_another_setting_is_refused(self, written: Path) -> None:
+        path = written / "scores.csv"
+        first, second, *others = path.read_text().splitlines()
+        path.write_text("\n".join([first, second.replace(",", ",1", 1), *others]) + "\n")
+        with pytest.raises(InputError, match=r"is not the measurement that robustness\.json describes"):
+            read_robustness(written)
 
     @pytest.mark.parametrize(
         ("damage", "message"),

@@ -135,10 +135,14 @@ class TestWords:
             "3 bodies with 50 controllers, drawn at random from seed 1 and the same for every body."
         )
         assert "Each group is one body, so all this is about these bodies." in words
-        assert "more controllers make any difference significant, and 50 are enough" in words
+        assert "more controllers make any difference significant. " in words
         assert "diverged" not in words
         assert "same body" not in words
         assert "a group is worth" not in words
+
+    def test_of_many_controllers_say_that_little_is_found(self) -> None:
+        words = conclusions(find(measure([1.0, 2.0, 3.0], 400)))
+        assert "more controllers make any difference significant, and 400 are enough for small ones." in words
 
     def test_of_several_bodies_compare_their_medians(self) -> None:
         words = conclusions(find(measure([1.0, 2.0, 3.0], 50, groups="XXY")))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import json
 import math
@@ -21,7 +22,7 @@ from evoframe.analysis.robustness.words import conclusions
 from evoframe.analysis.writing import prepare_directory, write_figure, write_table
 from evoframe.champion import parsed_json
 from evoframe.errors import InputError
-from evoframe.files import read_text
+from evoframe.files import is_file, read_text
 from evoframe.measurement import Body, Divergence, Robustness, Setting
 from evoframe.provenance import differences
 from evoframe.store import write_atomically
@@ -84,7 +85,8 @@ def document_of(measured: Robustness) -> dict[str, Any]:
         {"controller": each.controller, "body": setting.bodies[each.body].label, "step": each.step}
         for each in measured.diverged
     ]
-    return {"format": _FORMAT, **_tables(setting), "diverged": lost}
+    digest = hashlib.sha256(scores_text(measured).encode()).hexdigest()
+    return {"format": _FORMAT, **_tables(setting), "diverged": lost, "scores_sha256": digest}
 
 
 def as_json(found: Findings) -> dict[str, Any]:
@@ -131,11 +133,13 @@ def refuse_another(directory: Path, setting: Setting, *, force: bool = False) ->
         raise InputError(f"{directory}: cannot be used for a measurement: {error.strerror}") from error
     if not occupied:
         return
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{directory}: is not empty, and not the directory of a measurement; choose another")
     if force:
         return
-    lines = differences(_compared(_document(path).setting), _compared(setting))
+    there = _document(path).setting
+    alike = [body.label for body in there.bodies] == [body.label for body in setting.bodies]
+    lines = differences(_compared(there, labelled=alike), _compared(setting, labelled=alike))
     if lines:
         listed = "\n  ".join(lines)
         raise InputError(f"{path}: was measured otherwise; use --out, or --force to replace it:\n  {listed}")
@@ -148,14 +152,17 @@ def read_robustness(directory: str | Path) -> Robustness:
         InputError: There is none, or it is damaged.
     """
     path = Path(directory) / SETTING_FILE
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{directory}: is no measurement of robustness: there is no {SETTING_FILE}")
     found = _document(path)
     path = Path(directory) / SCORES_FILE
+    text = read_text(path, _LARGEST)
     try:
-        scores = _read_scores(read_text(path, _LARGEST), found)
+        scores = _read_scores(text, found)
     except (ValueError, csv.Error) as error:
         raise InputError(f"{path}: not as evoframe writes it: {error}") from error
+    if hashlib.sha256(text.encode()).hexdigest() != found.digest:
+        raise InputError(f"{path}: is not the measurement that {SETTING_FILE} describes; measure again")
     scores.setflags(write=False)
     return Robustness(found.setting, scores, found.diverged)
 
@@ -172,11 +179,18 @@ def _tables(setting: Setting) -> dict[str, Any]:
     }
 
 
-def _compared(setting: Setting) -> dict[str, Any]:
-    """Return the setting as tables in which each body has a key of its own."""
-    bodies = {body.label: f"{body.digest[:16]} in {body.group}" for body in setting.bodies}
-    order = ", ".join(body.label for body in setting.bodies)
-    return {**_tables(setting), "bodies": bodies, "order of bodies": order}
+def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
+    """Return the setting as tables in which each body has a key of its own.
+
+    Bodies are compared by what they are: a run that was moved is the same under another name. *labelled* is
+    whether their labels may stand in what a person reads, for they are the same in both settings.
+    """
+    groups = list(setting.groups)
+    bodies = {
+        body.label if labelled else str(number): f"{body.digest[:16]} in group {groups.index(body.group) + 1}"
+        for number, body in enumerate(setting.bodies, start=1)
+    }
+    return {**_tables(setting), "bodies": bodies}
 
 
 @attrs.frozen
@@ -185,6 +199,7 @@ class _Described:
 
     setting: Setting
     diverged: tuple[Divergence, ...]
+    digest: str
 
 
 def _document(path: Path) -> _Described:
@@ -212,14 +227,14 @@ def _described(document: Mapping[str, Any]) -> _Described:
         setting = Setting(**given, bodies=bodies)
         columns = {body.label: column for column, body in enumerate(bodies)}
         lost = [Divergence(d["controller"], columns[d["body"]], d["step"]) for d in document["diverged"]]
-        same = _text(document) == _text(
-            {"format": _FORMAT, **_tables(setting), "diverged": document["diverged"]}
-        )
+        kept = {key: document[key] for key in ("diverged", "scores_sha256")}
+        same = _text(document) == _text({"format": _FORMAT, **_tables(setting), **kept})
+        digest = document["scores_sha256"]
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise ValueError(f"not as evoframe writes it: {type(error).__name__}: {error}") from error
     if not same or not _sound(setting, lost):
         raise ValueError("not as evoframe writes it: a value is of the wrong kind")
-    return _Described(setting, tuple(lost))
+    return _Described(setting, tuple(lost), digest)
 
 
 def _text(document: Any) -> str:
@@ -256,7 +271,7 @@ def scores_text(measured: Robustness) -> str:
 
 def _read_scores(text: str, found: _Described) -> np.ndarray[Any, np.dtype[np.float64]]:
     setting = found.setting
-    header, *rows = csv.reader(io.StringIO(text))
+    header, *rows = [*csv.reader(io.StringIO(text))] or [[]]
     if header != [_FIRST, *(body.label for body in setting.bodies)]:
         raise ValueError(f"its columns are not the bodies of {SETTING_FILE}")
     numbers = [row[0] if row else "" for row in rows]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,20 +15,28 @@ from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.analysis.statistics import Correction
 from evoframe.analysis.writing import svg_of, write_figure
+from evoframe.candidates import read_candidates
+from evoframe.files import is_file, shown_name
+from evoframe.measurement import Robustness
+from evoframe.plugins import Plugins
+from evoframe.robustness import setting_of
 
 __all__ = ["robustness_report"]
 
 _NAME = "violins"
+_TITLE = "Robustness"
+_STALE = "The measurement that is there is of other champions, or simulates them otherwise than this"
 
 
 def robustness_report(
-    directory: Path, target: Path, correction: Correction = "holm"
+    directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm"
 ) -> tuple[Sequence[Path], Sequence[Section]]:
     """Write the violins of the measurement in a run's or a study's directory.
 
     Args:
         directory: Of the run or study.
         target: Where the report is written to.
+        plugins: The plugins that configurations name.
         correction: Of the p-values of pairs.
 
     Returns:
@@ -38,11 +47,23 @@ def robustness_report(
         RunError: The figure cannot be written.
     """
     place = directory / "robustness"
-    if not (place / SETTING_FILE).is_file():
+    if not is_file(place / SETTING_FILE):
         return (), ()
     measured = read_robustness(place)
+    if not _is_of(measured, directory, plugins):
+        again = f"evoframe robustness {shown_name(directory)} --force"
+        return (), (Section(_TITLE, [Words(f"{_STALE}; to measure again: {again}")]),)
     figure, words = violins(measured), conclusions(find(measured, correction))
-    return write_figure(figure, target / _NAME), (Section("Robustness", _blocks(figure, words)),)
+    return write_figure(figure, target / _NAME), (Section(_TITLE, _blocks(figure, words)),)
+
+
+def _is_of(measured: Robustness, directory: Path, plugins: Plugins) -> bool:
+    """Return whether all champions of a directory were measured, simulated as they are there."""
+    candidates = read_candidates([directory], None, (), plugins)
+    now, then = setting_of(candidates, measured.setting.seed, measured.setting.controllers), measured.setting
+    there = {body.digest for body in then.bodies}
+    simulation = json.loads(json.dumps(now.simulation))  # tuples are read back as lists
+    return simulation == then.simulation and there >= {body.digest for body in now.bodies}
 
 
 def _blocks(figure: Figure, words: str) -> list[Block]:

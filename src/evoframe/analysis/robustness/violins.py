@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from evoframe.analysis.figures import COLOURS
+from evoframe.analysis.plain import plain
 from evoframe.analysis.units import factor_of
 from evoframe.measurement import Robustness
 
@@ -25,6 +26,7 @@ _GRID = 200  # points of a density
 _HALF = 0.4  # of the distance between two groups
 
 
+@plain
 def violins(measured: Robustness) -> Figure:
     """Return a violin for each group: density, extremes, quartiles and median of all its scores.
 

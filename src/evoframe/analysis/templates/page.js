@@ -47,7 +47,7 @@
   const redrawn = [];
   const onTheme = (redraw) => { redrawn.push(redraw); };
   const redrawAll = () => redrawn.forEach((redraw) => redraw());
-  document.getElementById("theme").addEventListener("click", () => {
+  document.querySelector(".theme").addEventListener("click", () => {
     document.documentElement.dataset.theme = isDark() ? "light" : "dark";
     redrawAll();
   });
@@ -184,8 +184,9 @@
     };
     const stop = () => { cancelAnimationFrame(playing); playing = 0; play.textContent = "play"; play.setAttribute("aria-pressed", "false"); };
     const start = () => {
-      let before = performance.now();
+      let before; // the moment of the first picture, which may be before now
       const advance = (moment) => {
+        before ??= moment;
         frame = (frame + ((moment - before) / 1000) * (last / SECONDS)) % last;
         before = moment;
         move();
