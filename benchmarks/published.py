@@ -1,0 +1,135 @@
+"""Which of the published rankings hold? Line by line, on both yardsticks.
+
+Compares the runs of the study ``paper`` with the rankings of paper.md ("The experiments", 1): by the paper's
+test, Dunn's without a correction, and corrected after Holm. Prints tables in Markdown.
+
+    python -m benchmarks.published docs/results/paper/rows.csv
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from evoframe.analysis.statistics import Comparison, compare
+from evoframe.analysis.study_data import YARDSTICKS, Yardstick
+from evoframe.study.rows import Row, read_rows
+
+AVERAGES = ("AM", "WM", "GM", "HM")
+WITHIN = {
+    "2": ("WM > HM", "HM > AM", "AM = GM"),
+    "3": ("WM = AM", "AM > GM", "GM > HM"),
+    "5": ("AM > WM", "WM = GM", "GM = HM"),
+    "7": ("WM > AM", "AM = GM", "GM = HM"),
+    "10": ("WM > HM", "HM > AM", "AM > GM"),
+}
+"""Number of collaborators -> the published ranking, as comparisons of neighbours."""
+OVERALL = ("WM(2) > WM(3)", "WM(3) = WM(10)", "WM(10) > AM(5)", "AM(5) = WM(7)")
+
+BEYOND = 0.006  # m: no more on the plateau
+ALPHA = 0.05
+
+Groups = Mapping[str, Sequence[Row]]
+
+
+def groups_of(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """Return the runs of each cell, called as in ``WM(2)``."""
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        name = f"{row.settings['aggregator'].upper()}({row.settings['collaboration.n']})"
+        found.setdefault(name, []).append(row)
+    return found
+
+
+def values(groups: Groups, yardstick: Yardstick) -> dict[str, list[float]]:
+    """Return the final values of each group."""
+    return {name: [getattr(row, yardstick) for row in rows] for name, rows in groups.items()}
+
+
+def verdict(relation: str, p: float, wins: float) -> str:
+    """Say whether a published relation holds: ``>`` and ``=`` as the paper writes them."""
+    if relation == "=":
+        return "agrees" if p >= ALPHA else "**disagrees**"
+    if p >= ALPHA:
+        return "cannot tell"
+    return "agrees" if wins > 0.5 else "**disagrees**"
+
+
+def tested(comparison: Comparison, first: str, relation: str, second: str) -> str:
+    """Return what a test says of a published relation, with its p and how often the first wins."""
+    pair = comparison.pair(first, second)
+    wins = pair.a12 if pair.first == first else 1.0 - pair.a12
+    return f"{verdict(relation, pair.p, wins)} (p {pair.p:.2g}, A12 {wins:.2f})"
+
+
+def lines(groups: Groups, published: Sequence[str], label: str) -> Iterator[str]:
+    """Return a line of a table for each published relation of these groups."""
+    comparisons = [
+        compare(values(groups, yardstick), correction)
+        for yardstick in YARDSTICKS
+        for correction in ("none", "holm")
+    ]
+    for text in published:
+        first, relation, second = text.split()
+        cells = [tested(comparison, first, relation, second) for comparison in comparisons]
+        yield f"| {label} | {text} | {' | '.join(cells)} |"
+
+
+def rankings(rows: Sequence[Row]) -> Iterator[str]:
+    """Return the comparison with all published rankings."""
+    every = groups_of(rows)
+    judged = ("best pair, test of the paper", "after Holm", "last fitness, test of the paper", "after Holm")
+    yield f"| n | published | {' | '.join(judged)} |"
+    yield "|---|---|---|---|---|---|"
+    for n, published in WITHIN.items():
+        yield from lines({name: every[f"{name}({n})"] for name in AVERAGES}, published, n)
+    named = dict.fromkeys(name for text in OVERALL for name in text.split()[::2])
+    yield from lines({name: every[name] for name in named}, OVERALL, "all")
+
+
+def tests(rows: Sequence[Row]) -> Iterator[str]:
+    """Return for each number of collaborators whether the averages differ as a whole."""
+    every = groups_of(rows)
+    yield "| n | yardstick | Kruskal-Wallis H | p | epsilon squared | ranking after Holm |"
+    yield "|---|---|---|---|---|---|"
+    for n in WITHIN:
+        for yardstick in YARDSTICKS:
+            found = compare(values({name: every[f"{name}({n})"] for name in AVERAGES}, yardstick))
+            told = f"{found.h:.2f} | {found.p:.2g} | {found.epsilon_squared:.3f} | {found.ranking}"
+            yield f"| {n} | {yardstick} | {told} |"
+
+
+def cells(rows: Sequence[Row]) -> Iterator[str]:
+    """Return how the values of each cell lie, in millimetres."""
+    shown = ("best pair: median", "quartiles", "mean", "above 6 mm", "last fitness: median", "mean")
+    yield f"| n | average | runs | {' | '.join(shown)} |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    every = groups_of(rows)
+    for n in WITHIN:
+        for name in AVERAGES:
+            scores, fitness = (
+                [1000 * value for value in values({"": every[f"{name}({n})"]}, yardstick)[""]]
+                for yardstick in YARDSTICKS
+            )
+            low, middle, high = statistics.quantiles(scores, n=4, method="inclusive")
+            beyond = sum(score > 1000 * BEYOND for score in scores)
+            told = f"{middle:.3f} | {low:.3f}, {high:.3f} | {statistics.fmean(scores):.3f} | {beyond}"
+            last = f"{statistics.median(fitness):.3f} | {statistics.fmean(fitness):.3f}"
+            yield f"| {n} | {name} | {len(scores)} | {told} | {last} |"
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("rows", type=Path, help="rows.csv of the study")
+    rows = read_rows(parser.parse_args().rows)
+    for table in (cells, tests, rankings):
+        print("\n".join(table(rows)), end="\n\n")  # noqa: T201 - a command
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,55 @@
+"""The comparison with the published rankings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import attrs
+import pytest
+
+from benchmarks.published import OVERALL, WITHIN, cells, groups_of, lines, rankings, verdict
+from evoframe.study.rows import Row, read_rows
+
+ROWS = Path(__file__).parents[2] / "docs" / "results" / "paper" / "rows.csv"
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[Row]:
+    return read_rows(ROWS)
+
+
+@pytest.mark.parametrize(
+    ("relation", "p", "wins", "said"),
+    [
+        (">", 0.01, 0.8, "agrees"),
+        (">", 0.01, 0.2, "**disagrees**"),
+        (">", 0.2, 0.8, "cannot tell"),
+        ("=", 0.2, 0.8, "agrees"),
+        ("=", 0.01, 0.5, "**disagrees**"),
+    ],
+)
+def test_a_relation_holds_or_does_not_or_cannot_be_told(
+    relation: str, p: float, wins: float, said: str
+) -> None:
+    assert verdict(relation, p, wins) == said
+
+
+def test_every_published_relation_has_a_line(rows: list[Row]) -> None:
+    told = [line.split(" | ")[1] for line in rankings(rows)][2:]
+    assert told == [text for published in WITHIN.values() for text in published] + list(OVERALL)
+
+
+def test_every_cell_has_a_line(rows: list[Row]) -> None:
+    told = [line.split(" | ")[:2] for line in cells(rows)][2:]
+    assert len(told) == 20
+    assert ["| 10", "HM(10)"] in told
+
+
+def test_a_clear_difference_is_told_in_its_direction(rows: list[Row]) -> None:
+    every = groups_of(rows)
+    better = [attrs.evolve(row, score=row.score + 1.0, fitness=row.fitness + 1.0) for row in every["WM(2)"]]
+    groups = {"WM": better, "AM": every["AM(2)"], "GM": every["GM(2)"]}
+    first, second = lines(groups, ("WM > AM", "GM > WM"), "2")
+    assert first.count("agrees") == 4
+    assert first.count("A12 1.00") == 4
+    assert second.count("**disagrees**") == 4
