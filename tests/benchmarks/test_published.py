@@ -35,14 +35,14 @@ def test_a_relation_holds_or_does_not_or_cannot_be_told(
 
 
 def test_every_published_relation_has_a_line(rows: list[Row]) -> None:
-    told = [line.split(" | ")[1] for line in rankings(rows)][2:]
+    told = [line.split(" | ")[1] for line in [*rankings(rows)][2:]]
     assert told == [text for published in WITHIN.values() for text in published] + list(OVERALL)
 
 
 def test_every_cell_has_a_line(rows: list[Row]) -> None:
-    told = [line.split(" | ")[:2] for line in cells(rows)][2:]
+    told = [line.split(" | ")[:2] for line in [*cells(rows)][2:]]
     assert len(told) == 20
-    assert ["| 10", "HM(10)"] in told
+    assert ["| 10", "HM"] in told
 
 
 def test_a_clear_difference_is_told_in_its_direction(rows: list[Row]) -> None:
