@@ -184,12 +184,16 @@ def restore(coevolution: Coevolution, saved: Run) -> None:
 
 
 def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:
-    """Complete or remove what a kill has left half done, and note the resume."""
+    """Complete or remove what a kill has left half done, and note the resume.
+
+    A run that is finished may lack a file; or another process has finished it a moment ago.
+    """
     for path in saved.directory.iterdir():
         if is_leftover(path):
             remove(path)
     rows: Mapping[str, Any] = {table: saved.rows(table) for table in CHAINED}
-    store.go_on(rows, (len(rows["resumes"]), saved.last_turn, json.dumps(changes)))
+    resume = None if saved.finished else (len(rows["resumes"]), saved.last_turn, json.dumps(changes))
+    store.go_on(rows, resume)
     if saved.champion_document is not None and not saved.champion_is_written:
         champion = parsed_json(saved.champion_document)
         store.save_champion(champion, design_from_json(champion["design"]))

@@ -130,18 +130,19 @@ class Store:
                 self._database.execute(statement)
             self._replace("meta", [("format", str(RUN_FORMAT)), ("configuration", _json(configuration))])
 
-    def go_on(self, rows: Mapping[str, Sequence[Sequence[Any]]], resume: Sequence[Any]) -> None:
+    def go_on(self, rows: Mapping[str, Sequence[Sequence[Any]]], resume: Sequence[Any] | None) -> None:
         """Go on where a run was left, and note it.
 
         Args:
             rows: All rows of the tables that only grow, as they were read.
-            resume: The row of this resume.
+            resume: The row of this resume; ``None`` if no turn is left.
         """
         for table, saved in rows.items():
             self._checksums.add(table, saved)
         self.last_turn = rows["workload"][-1][0] if rows["workload"] else -1
-        with self._transaction():
-            self._insert("resumes", [tuple(resume)])
+        if resume is not None:
+            with self._transaction():
+                self._insert("resumes", [tuple(resume)])
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
         """Save a turn and the state after it, both or neither; the files of a new champion may follow later.

@@ -278,3 +278,15 @@ def test_a_resume_is_noted_only_beside_the_results(left: Path, toy_plugins: Plug
     resume(left, plugins=toy_plugins)
     assert rows(left, "resumes") == [(0, 3, "[]")]
     assert load_run(left).finished
+
+
+def test_a_run_that_was_finished_a_moment_ago_is_not_resumed(left: Path, toy_plugins: Plugins) -> None:
+    resume(left, plugins=toy_plugins)
+    before = {path.name: path.read_bytes() for path in left.iterdir() if path.suffix in (".json", ".toml")}
+    execution = reopen(left, plugins=toy_plugins)  # by a process that saw it before
+    assert execution.play(Observers(toy_plugins.manager))
+    execution.verify()
+    assert rows(left, "resumes") == [(0, 3, "[]")]
+    after = {path.name: path.read_bytes() for path in left.iterdir() if path.suffix in (".json", ".toml")}
+    assert after == before
+    assert load_run(left).finished
