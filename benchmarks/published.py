@@ -90,13 +90,15 @@ def rankings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def tests(rows: Sequence[Row]) -> Iterator[str]:
-    """Return for each number of collaborators whether the averages differ as a whole."""
+    """Return whether the averages differ for each number of collaborators, and the numbers for all averages."""
     every = groups_of(rows)
+    compared: dict[str, Groups] = {n: {name: every[f"{name}({n})"] for name in AVERAGES} for n in WITHIN}
+    compared["2 to 10"] = {f"n = {n}": [row for part in compared[n].values() for row in part] for n in WITHIN}
     yield "| n | yardstick | Kruskal-Wallis H | p | epsilon squared | ranking after Holm |"
     yield "|---|---|---|---|---|---|"
-    for n in WITHIN:
+    for n, groups in compared.items():
         for yardstick in YARDSTICKS:
-            found = compare(values({name: every[f"{name}({n})"] for name in AVERAGES}, yardstick))
+            found = compare(values(groups, yardstick))
             told = f"{found.h:.2f} | {found.p:.2g} | {found.epsilon_squared:.3f} | {found.ranking}"
             yield f"| {n} | {yardstick} | {told} |"
 
