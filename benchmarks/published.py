@@ -90,7 +90,7 @@ def rankings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def tests(rows: Sequence[Row]) -> Iterator[str]:
-    """Return whether the averages differ for each number of collaborators, and the numbers for all averages."""
+    """Return whether averages differ for each number of collaborators, and these for all averages."""
     every = groups_of(rows)
     compared: dict[str, Groups] = {n: {name: every[f"{name}({n})"] for name in AVERAGES} for n in WITHIN}
     compared["2 to 10"] = {f"n = {n}": [row for part in compared[n].values() for row in part] for n in WITHIN}
