@@ -22,7 +22,7 @@ install_chromium() {
     local log
     log=$(mktemp)
     export DEBIAN_FRONTEND=noninteractive
-    { apt-get update && apt-get install --yes --no-install-recommends chromium; } &>"$log" ||
+    { apt-get update && apt-get install --yes chromium; } &>"$log" ||
         { tail -n 5 "$log" >&2; return 1; }
     rm "$log"
 }
