@@ -62,7 +62,7 @@ materials = st.builds(
     expansion_coefficient=st.just(0.0) | st.floats(-0.02, 0.02),
     static_friction=ratios,
     dynamic_friction=ratios,
-    name=st.text(st.characters(categories=["L", "P", "S", "Zs"]), max_size=5),
+    name=st.text(st.characters(categories=["L", "P", "S"], include_characters=" "), max_size=5),
 )
 regions = st.builds(
     FixedRegion,
