@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from evoframe.analysis.statistics import Correction
+from evoframe.analysis.statistics import Correction, in_notation
 
 __all__ = ["BlockComparison", "BlockPair", "compare_blocks"]
 
@@ -70,10 +70,7 @@ class BlockComparison:
         Args:
             alpha: Below which p two neighbours count as different.
         """
-        parts = [self.names[0]]
-        for one, other in itertools.pairwise(self.names):
-            parts += [">" if self.pair(one, other).p < alpha else "=", other]
-        return " ".join(parts)
+        return in_notation(self.names, self.pair, alpha)
 
     def pair(self, first: str, second: str) -> BlockPair:
         """Return what is said of two groups.

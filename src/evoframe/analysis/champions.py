@@ -11,7 +11,7 @@ import attrs
 from evoframe.blame import blaming
 from evoframe.config import RunConfig
 from evoframe.drawings import Geometry, NetworkGraph, can_be_drawn
-from evoframe.errors import ComponentError, InputError
+from evoframe.errors import InputError
 from evoframe.jobs import naming, read_job
 from evoframe.loading import Run
 from evoframe.plugins import Plugins
@@ -106,11 +106,10 @@ def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
         if population is None or graph is None:
             continue
         encoder = population.encoder.component
-        try:
-            drawn = graph(genome, encoder.inputs, encoder.outputs)
-        except ValueError as error:
-            raise InputError(f"{run.directory}: the champion's genome of '{name}': {error}") from error
-        except Exception as error:
-            raise ComponentError(f"populations.{name}.evolver", f"{type(error).__name__}: {error}") from error
+        with blaming(f"populations.{name}.evolver"):
+            try:
+                drawn = graph(genome, encoder.inputs, encoder.outputs)
+            except ValueError as error:
+                raise InputError(f"{run.directory}: the champion's genome of '{name}': {error}") from error
         inputs, outputs = (tuple(getattr(encoder, key, ())) for key in ("input_names", "output_names"))
         yield DrawnNetwork(name, drawn, inputs, outputs)

@@ -50,21 +50,25 @@ def write_run_report(
     prepare_directory(target)
     written = write_figure(lines(curves, label, title), target / "curves")
     written += write_champion(with_figures, target)
-    written += write_table(_summary(run, champion), target / "summary")
+    summary = _summary(run, champion)
+    written += write_table(summary, target / "summary")
     more, robustness = robustness_report(directory, target, plugins, correction)
     written += more
-    champion_first, *others = _sections(run, with_figures, Chart(_CAPTION, lines_chart(curves, label)))
+    progress = Section(
+        "Progress", [Chart(_CAPTION, lines_chart(curves, label)), Table("The final figures.", summary)]
+    )
+    champion_first, *others = _sections(run, with_figures, progress)
     data = page(title, lead, [champion_first, *robustness, *others])
     written.append(write_bytes(data, target / "report.html"))
     return Written(f"{title}: {lead}\n", tuple(written))
 
 
-def _sections(run: Run, champion: DrawnChampion, progress: Chart) -> list[Section]:
+def _sections(run: Run, champion: DrawnChampion, progress: Section) -> list[Section]:
     text = read_text(run.directory / CONFIG_FILE, LARGEST_DOCUMENT)
     made_by = versions_table(run.config.get("provenance", {}))
     return [
         *champion_sections(champion, "the best pair that was simulated"),
-        Section("Progress", [progress, Table("The final figures.", _summary(run, champion.data))]),
+        progress,
         Section("Configuration", [Source(CONFIG_FILE, text), Table("What made it.", made_by)]),
     ]
 

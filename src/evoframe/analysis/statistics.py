@@ -9,8 +9,8 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Mapping, Sequence
-from typing import Literal, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal, Protocol, TypeAlias
 
 import attrs
 import numpy as np
@@ -18,7 +18,17 @@ import scikit_posthocs as posthocs
 from numpy.typing import NDArray
 from scipy import stats
 
-__all__ = ["CORRECTIONS", "Comparison", "Correction", "Group", "Pairwise", "a12", "compare", "detectable_a12"]
+__all__ = [
+    "CORRECTIONS",
+    "Comparison",
+    "Correction",
+    "Group",
+    "Pairwise",
+    "a12",
+    "compare",
+    "detectable_a12",
+    "in_notation",
+]
 
 Floats: TypeAlias = NDArray[np.float64]
 Correction: TypeAlias = Literal["holm", "bonferroni", "fdr_bh", "none"]
@@ -101,11 +111,7 @@ class Comparison:
 
         Between neighbours stands what is said of these two alone; :attr:`letters` has all pairs.
         """
-        parts = [self.groups[0].name]
-        for one, other in itertools.pairwise(self.groups):
-            sign = ">" if self.pair(one.name, other.name).p < self.alpha else "="
-            parts += [sign, other.name]
-        return " ".join(parts)
+        return in_notation([group.name for group in self.groups], self.pair, self.alpha)
 
     def pair(self, first: str, second: str) -> Pairwise:
         """Return what is said of two groups.
@@ -119,6 +125,25 @@ class Comparison:
             if (pair.first, pair.second) == (second, first):
                 return Pairwise(first, second, pair.p, 1 - pair.a12)
         raise KeyError(f"{first}, {second}")
+
+
+class _Tested(Protocol):
+    @property
+    def p(self) -> float: ...
+
+
+def in_notation(names: Sequence[str], pair: Callable[[str, str], _Tested], alpha: float) -> str:
+    """Return a ranking as the paper writes it: between neighbours stands what their test says.
+
+    Args:
+        names: From the greatest down.
+        pair: Gives the test of two of them.
+        alpha: Below which p two neighbours count as different.
+    """
+    parts = [names[0]]
+    for one, other in itertools.pairwise(names):
+        parts += [">" if pair(one, other).p < alpha else "=", other]
+    return " ".join(parts)
 
 
 def compare(
