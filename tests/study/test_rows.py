@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,8 +13,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from evoframe import InputError, load_run
+from evoframe.study.conduct import claim, survey
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study
+from evoframe.study.progress import note_failure
 from evoframe.study.rows import Row, read_rows, row_of, write_rows
 
 Read = Callable[..., Study]
@@ -44,8 +47,9 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path, given_rows: list[Row
     assert read_rows(tmp_path / "rows.csv") == given_rows
 
 
-def kept(study: Study, directory: Path, planned: list[Planned]) -> list[Row]:
-    rows = gather(study, directory, planned)
+def kept(study: Study, directory: Path) -> list[Row]:
+    imported = imported_rows(study, directory)
+    rows = list(gather(survey(study, directory, imported), imported).values())
     write_rows(rows, directory / "rows.csv")
     return rows
 
@@ -67,12 +71,12 @@ def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]
 def test_rows_of_elsewhere_count_as_finished(
     made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
 ) -> None:
-    study, directory, planned = made
-    gathered = kept(study, directory, planned)
+    study, directory, _ = made
+    gathered = kept(study, directory)
     there = tmp_path / "there"
     there.mkdir()
     import_rows(study, there, [directory / "rows.csv"])
-    again = kept(study, there, list(study.planned(there)))
+    again = kept(study, there)
     assert [attrs.evolve(row, fitness_curve=(), score_curve=()) for row in again] == [
         attrs.evolve(row, fitness_curve=(), score_curve=()) for row in gathered
     ]
@@ -80,6 +84,30 @@ def test_rows_of_elsewhere_count_as_finished(
         assert other.fitness_curve == pytest.approx(row.fitness_curve, rel=1e-5)
     assert (there / "rows.csv").read_bytes() == (directory / "rows.csv").read_bytes()
     assert (there / "curves.csv").read_bytes() == (directory / "curves.csv").read_bytes()
+
+
+def test_rows_of_elsewhere_stand_for_runs_that_are_not_finished_here(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path
+) -> None:
+    study, directory, planned = made
+    gathered = kept(study, directory)
+    there = tmp_path / "there"
+    claim(study, there)
+    failed, begun, missing, finished = study.planned(there)
+    note_failure(failed.directory, "a fault")
+    begun.directory.mkdir(parents=True)
+    shutil.copy(planned[1].directory / "config.toml", begun.directory)
+    shutil.copytree(planned[3].directory, finished.directory)
+    assert [status.state for status in survey(study, there).values()] == [
+        "failed", "begun", "missing", "finished",
+    ]  # fmt: skip
+    import_rows(study, there, [directory / "rows.csv"])
+    imported = imported_rows(study, there)
+    statuses = survey(study, there, imported)
+    assert [statuses[run].state for run in (failed, begun, missing)] == ["imported"] * 3
+    rows = gather(statuses, imported)
+    assert [row.champion for row in rows.values()] == [row.champion for row in gathered]
+    assert rows[finished] == gathered[3]  # and not with the digits of a table of curves
 
 
 @pytest.mark.parametrize(
@@ -96,8 +124,8 @@ def test_rows_of_elsewhere_count_as_finished(
 def test_rows_of_something_else_are_refused(
     made: tuple[Study, Path, list[Planned]], change: tuple[str, str], message: str
 ) -> None:
-    study, directory, planned = made
-    kept(study, directory, planned)
+    study, directory, _ = made
+    kept(study, directory)
     path = directory / "rows.csv"
     path.write_text(path.read_text().replace(*change))
     with pytest.raises(InputError) as caught:
@@ -109,7 +137,7 @@ def test_rows_of_cells_that_are_not_asked_for_now_are_kept(
     made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
 ) -> None:
     study, directory, planned = made
-    kept(study, directory, planned)
+    kept(study, directory)
     there = tmp_path / "there"
     there.mkdir()
     import_rows(study, there, [directory / "rows.csv"])
@@ -121,8 +149,8 @@ def test_rows_of_cells_that_are_not_asked_for_now_are_kept(
 
 
 def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
-    study, directory, planned = made
-    rows = kept(study, directory, planned)
+    study, directory, _ = made
+    rows = kept(study, directory)
     import_rows(study, directory, [directory / "rows.csv"])
     write_rows([attrs.evolve(rows[0], champion="other")], directory / "rows.csv")
     with pytest.raises(InputError, match="another champion than in the rows imported before"):

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import attrs
-from matplotlib.figure import Figure
 
 from evoframe.analysis.bodies import body
 from evoframe.analysis.champions import ChampionData
@@ -14,7 +13,7 @@ from evoframe.analysis.networks import TooLargeError, network
 from evoframe.analysis.page import Block, Motion, Picture, Section, Table, Words
 from evoframe.analysis.tables import verification_table
 from evoframe.analysis.units import with_unit
-from evoframe.analysis.writing import svg_of, write_figure, write_table
+from evoframe.analysis.writing import Rendered, rendered, write_table
 
 __all__ = ["DrawnChampion", "champion_sections", "drawn", "write_champion"]
 
@@ -31,8 +30,8 @@ class DrawnChampion:
     """
 
     data: ChampionData
-    body: Figure | None
-    networks: Mapping[str, Figure]
+    body: Rendered | None
+    networks: Mapping[str, Rendered]
     undrawn: Mapping[str, str]
 
 
@@ -42,10 +41,13 @@ def drawn(data: ChampionData) -> DrawnChampion:
     networks, undrawn = {}, {}
     for each in data.networks:
         try:
-            networks[each.population] = network(each.graph, each.inputs, each.outputs, each.population)
+            figure = network(each.graph, each.inputs, each.outputs, each.population)
         except TooLargeError as error:
             undrawn[each.population] = str(error)
-    return DrawnChampion(data, body(data.geometry, title) if data.geometry else None, networks, undrawn)
+        else:
+            networks[each.population] = rendered(figure, f"champion-network-{each.population}")
+    shape = rendered(body(data.geometry, title), "champion-body") if data.geometry else None
+    return DrawnChampion(data, shape, networks, undrawn)
 
 
 def write_champion(champion: DrawnChampion, directory: Path) -> list[Path]:
@@ -54,11 +56,8 @@ def write_champion(champion: DrawnChampion, directory: Path) -> list[Path]:
     Raises:
         RunError: They cannot be written.
     """
-    written = []
-    if champion.body is not None:
-        written += write_figure(champion.body, directory / "champion-body")
-    for population, figure in champion.networks.items():
-        written += write_figure(figure, directory / _name(population))
+    figures = [*([champion.body] if champion.body else []), *champion.networks.values()]
+    written = [path for figure in figures for path in figure.write(directory)]
     if champion.data.verification is not None:
         written += write_table(verification_table(champion.data.verification), directory / "verification")
     return written
@@ -82,14 +81,10 @@ def champion_sections(champion: DrawnChampion, whose: str) -> list[Section]:
         caption = "What is left of its score with one thing changed at a time (evoframe verify)."
         blocks.append(Table(caption, verification_table(data.verification)))
     networks: list[Block] = [
-        Picture(f"The network that drew its {population}.", svg_of(figure, _name(population)))
+        Picture(f"The network that drew its {population}.", figure.svg)
         for population, figure in champion.networks.items()
     ]
     networks += [
         Words(f"The network of {name} is not drawn: {why}.") for name, why in champion.undrawn.items()
     ]
     return [Section("Champion", blocks), Section("Networks", networks)]
-
-
-def _name(population: str) -> str:
-    return f"champion-network-{population}"

@@ -14,6 +14,8 @@ import pandas as pd
 import scikit_posthocs as posthocs
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
 
 from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.plain import plain
@@ -21,11 +23,13 @@ from evoframe.analysis.statistics import Comparison
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, axis_title, factor_of
 
-__all__ = ["COLOURS", "DASHES", "curves", "finals", "lines", "ranks"]
+__all__ = ["COLOURS", "DASHES", "curves", "curves_of", "finals", "lines", "ranks"]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
 _WIDTH = 3.5  # inches: a column of an article
+_GAP = 0.03  # inches, between a line and its label
+_FEWEST = 5  # values of which a box tells something
 
 
 def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
@@ -36,8 +40,12 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
         yardstick: What is drawn.
         unit: Of scores; metres are shown as millimetres.
     """
-    label = axis_title(NAMES[yardstick], unit)
-    return lines(lines_of_view(view, yardstick, unit), label, view.title, f"{view.key}: runs")
+    return curves_of(lines_of_view(view, yardstick, unit), view, yardstick, unit)
+
+
+def curves_of(drawn: Sequence[Line], view: View, yardstick: Yardstick, unit: str = "") -> Figure:
+    """Return :func:`curves` from the lines of the view, whose bands take a while."""
+    return lines(drawn, axis_title(NAMES[yardstick], unit), view.title, f"{view.key}: runs")
 
 
 @plain
@@ -81,6 +89,8 @@ def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = No
 def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Comparison | None = None) -> Figure:
     """Return every run's final value, with box plots, and letters: what shares one is not different.
 
+    Groups of fewer than five runs have no box (Krzywinski and Altman 2014, Nature Methods 11, 119).
+
     Args:
         view: The groups.
         yardstick: What is drawn.
@@ -91,18 +101,13 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     groups = view.values(yardstick)
     scaled = [np.array(values) * factor_of(unit) for values in groups.values()]
     places = np.arange(1, len(groups) + 1)
-    boxes = axes.boxplot(
-        scaled,
-        positions=places + 0.18,
-        widths=0.28,
-        showfliers=False,
-        medianprops={"color": "black", "lw": 1.5},
-    )
-    del boxes
     rng = np.random.default_rng(0)  # of the places of points, nothing else
     for number, (place, values) in enumerate(zip(places, scaled, strict=True)):
-        beside = place - 0.18 + rng.uniform(-0.1, 0.1, len(values))
+        boxed = len(values) >= _FEWEST
+        beside = place - (0.18 if boxed else 0.0) + rng.uniform(-0.1, 0.1, len(values))
         axes.plot(beside, values, "o", color=COLOURS[number % 8], ms=3, mew=0, alpha=0.6)
+        if boxed:
+            _box(axes, place + 0.18, values)
     if comparison is not None:
         _letter(axes, comparison, list(groups))
     labels = [f"{name}\n{len(values)} runs".replace(" (", "\n(") for name, values in groups.items()]
@@ -134,10 +139,14 @@ def ranks(comparison: Comparison, title: str) -> Figure:
         label_props={"size": 7},
         text_h_margin=0.02 * max(1.0, np.ptp([group.mean_rank for group in comparison.groups])),
         color_palette=["black"] * len(names),
+        elbow_props={"lw": 0.9},
+        marker_props={"s": 14},
     )
     for text in axes.texts:
         group = comparison.groups[int(text.get_text())]
         text.set_text(f"{group.name}: {group.mean_rank:.3g}")
+        gap = -_GAP if text.get_horizontalalignment() == "right" else _GAP  # else it touches its line
+        text.set_transform(text.get_transform() + ScaledTranslation(gap, 0, figure.dpi_scale_trans))
     axes.set_title(f"{title}: mean rank", size=9)
     return figure
 
@@ -150,6 +159,11 @@ def _figure(height: float = 2.6) -> tuple[Figure, Axes]:
     for text in (axes.xaxis.label, axes.yaxis.label):
         text.set_fontsize(8)
     return figure, axes
+
+
+def _box(axes: Axes, place: float, values: NDArray[np.float64]) -> None:
+    median = {"color": "black", "lw": 1.5}
+    axes.boxplot([values], positions=[place], widths=0.28, showfliers=False, medianprops=median)
 
 
 def _letter(axes: Axes, comparison: Comparison, names: Sequence[str]) -> None:

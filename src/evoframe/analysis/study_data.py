@@ -130,20 +130,17 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
     if not is_file(directory / STUDY_FILE):
         raise InputError(f"{directory}: is no study's directory: there is no {STUDY_FILE}")
     study = read_study(directory / STUDY_FILE, (), plugins or discover())
-    elsewhere = [planned.directory for planned in imported_rows(study, directory)]
-    statuses = survey(study, directory, elsewhere)
-    finished = [planned for planned, status in statuses.items() if status.state == "finished"]
-    rows = gather(study, directory, finished)
-    here = [
-        (row.score, run.directory) for row, run in zip(rows, finished, strict=True) if run.directory.is_dir()
-    ]
+    imported = imported_rows(study, directory)
+    statuses = survey(study, directory, imported)
+    rows = gather(statuses, imported)
+    here = {run.directory: row.score for run, row in rows.items() if statuses[run].state == "finished"}
     return StudyData(
         label=shown_name(directory),
         keys=tuple(study.grid),
         unit=_unit(study),
         planned=len(statuses),
-        rows=tuple(rows),
-        best_run=max(here, key=lambda found: found[0])[1] if here else None,
+        rows=tuple(rows.values()),
+        best_run=max(here, key=here.__getitem__, default=None),
         settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
     )
 

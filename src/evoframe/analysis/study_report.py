@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import attrs
@@ -11,8 +11,8 @@ import pandas as pd
 from evoframe.analysis.champion_report import champion_sections, drawn, write_champion
 from evoframe.analysis.champions import load_champion
 from evoframe.analysis.charts import finals_chart, lines_chart
-from evoframe.analysis.figures import curves, finals, ranks
-from evoframe.analysis.lines import lines_of_view
+from evoframe.analysis.figures import curves_of, finals, ranks
+from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
 from evoframe.analysis.robustness import robustness_report
 from evoframe.analysis.slugs import slugs
@@ -59,7 +59,8 @@ def write_study_report(
         raise InputError(f"{data.label}: no run of this study is finished, so there is nothing to report")
     prepare_directory(target)
     found = comparisons(data, correction)
-    written = _figures(data, found, target)
+    all_shown = [*_shown(data, found)]
+    written = _figures(data.unit, all_shown, target)
     tables = _tables(found)
     for name, table in tables.items():
         written += write_table(table, target / name)
@@ -69,7 +70,7 @@ def write_study_report(
     more, robustness = robustness_report(directory, target, plugins, correction)
     words = _words(data, found)
     written += [*more, write_bytes(words.encode(), target / "conclusions.txt")]
-    rankings, *compared = _compared_sections(data, found, tables["ranking"])
+    rankings, *compared = _compared_sections(data.unit, all_shown, tables["ranking"])
     sections = [
         rankings,
         *(champion_sections(champion, _whose(data)) if champion else []),
@@ -84,10 +85,18 @@ def write_study_report(
 
 @attrs.frozen
 class _Shown:
-    """A view on one yardstick, with its comparison if there is more than one group."""
+    """A view on one yardstick.
+
+    Attributes:
+        view: The groups.
+        yardstick: What they are compared by.
+        lines: What figures and charts draw of them.
+        comparison: Of the groups, if there is more than one.
+    """
 
     view: View
     yardstick: Yardstick
+    lines: Sequence[Line]
     comparison: Comparison | None
 
 
@@ -95,18 +104,21 @@ def _shown(data: StudyData, found: Compared) -> Iterator[_Shown]:
     compared = {(view.title, yardstick): comparison for view, yardstick, comparison in found}
     for yardstick in YARDSTICKS:
         for view in data.views(yardstick):
-            yield _Shown(view, yardstick, compared.get((view.title, yardstick)))
+            lines = lines_of_view(view, yardstick, data.unit)
+            yield _Shown(view, yardstick, lines, compared.get((view.title, yardstick)))
 
 
-def _figures(data: StudyData, found: Compared, directory: Path) -> list[Path]:
-    written, all_shown = [], list(_shown(data, found))
+def _figures(unit: str, all_shown: Sequence[_Shown], directory: Path) -> list[Path]:
+    written = []
     names = slugs(f"{shown.yardstick} {shown.view.title}" for shown in all_shown)
     for shown, name in zip(all_shown, names, strict=True):
         view, yardstick, comparison = shown.view, shown.yardstick, shown.comparison
-        written += write_figure(curves(view, yardstick, data.unit), directory / f"curves-{name}")
-        written += write_figure(finals(view, yardstick, data.unit, comparison), directory / f"finals-{name}")
+        title = f"{view.title}, {NAMES[yardstick]}"
+        curves = curves_of(shown.lines, view, yardstick, unit)
+        written += write_figure(curves, directory / f"curves-{name}")
+        written += write_figure(finals(view, yardstick, unit, comparison), directory / f"finals-{name}")
         if comparison is not None:
-            written += write_figure(ranks(comparison, view.title), directory / f"ranks-{name}")
+            written += write_figure(ranks(comparison, title), directory / f"ranks-{name}")
     return written
 
 
@@ -122,15 +134,15 @@ def _large(tables: dict[str, pd.DataFrame]) -> list[Block]:
     return [Table(caption, tables[name]) for name, caption in captions.items() if len(tables[name])]
 
 
-def _compared_sections(data: StudyData, found: Compared, rankings: pd.DataFrame) -> list[Section]:
+def _compared_sections(unit: str, all_shown: Sequence[_Shown], rankings: pd.DataFrame) -> list[Section]:
     """Return a section for each view, with both yardsticks, after that of all rankings."""
     by_title: dict[str, list[Block]] = {}
-    for shown in _shown(data, found):
-        view, unit, name = shown.view, data.unit, NAMES[shown.yardstick]
+    for shown in all_shown:
+        view, name = shown.view, NAMES[shown.yardstick]
         blocks = by_title.setdefault(view.title, [])
         if shown.comparison is not None:
             blocks.append(Words(f"{shown.comparison.ranking}: {conclusion(shown.comparison, f'the {name}')}"))
-        plot = lines_chart(lines_of_view(view, shown.yardstick, unit), axis_title(name, unit))
+        plot = lines_chart(shown.lines, axis_title(name, unit))
         over_runs = "mean over runs, with 95 % bands (bootstrap)" if _many(view) else "mean over runs"
         blocks.append(Chart(f"The {name} in each generation: {over_runs}.", plot))
         plot = finals_chart(view, shown.yardstick, unit)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,15 @@ from matplotlib.figure import Figure
 from evoframe.errors import InputError
 from evoframe.store import write_atomically
 
-__all__ = ["Written", "prepare_directory", "svg_of", "write_bytes", "write_figure", "write_table"]
+__all__ = [
+    "Rendered",
+    "Written",
+    "prepare_directory",
+    "rendered",
+    "write_bytes",
+    "write_figure",
+    "write_table",
+]
 
 _FORMATS: dict[str, dict[str, Any]] = {
     "pdf": {"metadata": {"CreationDate": None, "Creator": None, "Producer": None}},
@@ -35,6 +44,32 @@ class Written:
 
     words: str
     files: tuple[Path, ...]
+
+
+@attrs.frozen
+class Rendered:
+    """A figure as the files that it becomes.
+
+    Attributes:
+        name: What they are called, without an ending.
+        files: Ending -> bytes.
+    """
+
+    name: str
+    files: Mapping[str, bytes] = attrs.field(repr=False)
+
+    @property
+    def svg(self) -> bytes:
+        """What stands in a page."""
+        return self.files["svg"]
+
+    def write(self, directory: Path) -> list[Path]:
+        """Write the files, and return their paths.
+
+        Raises:
+            RunError: They cannot be written.
+        """
+        return [write_bytes(data, directory / f"{self.name}.{ending}") for ending, data in self.files.items()]
 
 
 def prepare_directory(directory: Path) -> Path:
@@ -65,15 +100,19 @@ def write_figure(figure: Figure, path: Path) -> list[Path]:
     Raises:
         RunError: It cannot be written.
     """
-    return [
-        write_bytes(_bytes_of(figure, ending, path.name), path.with_name(f"{path.name}.{ending}"))
-        for ending in _FORMATS
-    ]
+    return rendered(figure, path.name).write(path.parent)
 
 
-def svg_of(figure: Figure, name: str) -> bytes:
-    """Return a figure as the bytes of an SVG file; *name* makes the ids in it its own."""
-    return _bytes_of(figure, "svg", name)
+def rendered(figure: Figure, name: str) -> Rendered:
+    """Return a figure in all formats; it has the same layout in each.
+
+    Args:
+        figure: What is drawn.
+        name: What its files are called, without an ending. It makes the ids in an SVG file its own.
+    """
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # else it is arranged anew for each format, and slightly otherwise
+    return Rendered(name, {ending: _bytes_of(figure, ending, name) for ending in _FORMATS})
 
 
 def write_table(table: pd.DataFrame, path: Path) -> list[Path]:

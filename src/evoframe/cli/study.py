@@ -93,8 +93,8 @@ def study(
             import_rows(found, directory, tables)
     elif directory.exists():
         refuse_another(found, directory)
-    imported = [planned.directory for planned in imported_rows(found, directory, tables)]
-    sitting = _Sitting(ctx, found, directory, survey(found, directory, imported), retry)
+    imported = imported_rows(found, directory, tables)
+    sitting = _Sitting(ctx, found, directory, imported, survey(found, directory, imported), retry)
     if dry_run:
         sitting.tell()
         return
@@ -108,27 +108,27 @@ class _Sitting:
     ctx: click.Context
     study: Study
     directory: Path
+    imported: Mapping[Planned, Row]
     statuses: Mapping[Planned, Status]
     retry: bool
 
     @property
-    def finished(self) -> list[Planned]:
-        return [planned for planned, status in self.statuses.items() if status.state == "finished"]
-
-    @property
     def todo(self) -> list[Planned]:
-        wanted = ("missing", "begun", "failed") if self.retry else ("missing", "begun")
-        return [planned for planned, status in self.statuses.items() if status.state in wanted]
+        return self._that_are("missing", "begun", *(["failed"] if self.retry else []))
+
+    def _that_are(self, *states: str) -> list[Planned]:
+        return [planned for planned, status in self.statuses.items() if status.state in states]
 
     def tell(self) -> None:
         """Say what would be run."""
-        estimate = estimated(self.todo, self.finished)
+        estimate = estimated(self.todo, self._that_are("finished"))
+        done = self._that_are("finished", "imported")
         cores = available_cores()
         table = Table(box=None, show_header=False)
         table.add_column(style="bold", no_wrap=True)
         table.add_column(overflow="fold")
         table.add_row("configurations", f"{len(self.study.cells)}, {self.study.runs} runs each")
-        table.add_row("runs", f"{len(self.finished)} finished, {len(self.todo)} to run")
+        table.add_row("runs", f"{len(done)} finished, {len(self.todo)} to run")
         table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.todo):,} to score")
         table.add_row(
             "time", f"{duration(estimate.seconds / cores)} on {cores} cores, from {estimate.measured}"
@@ -139,7 +139,7 @@ class _Sitting:
 
     def work(self, workers: int) -> None:
         """Run what is missing, and show what came of it."""
-        before = {planned: row.score for planned, row in self._rows(self.finished).items()}
+        before = {planned: row.score for planned, row in gather(self.statuses, self.imported).items()}
         study, modules = self.study, modules_of(self.ctx)
         orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in self.todo}
         with stop_on_signals("the turns in progress") as stop:
@@ -151,26 +151,22 @@ class _Sitting:
                 interrupted = True
         self._end(stop.exit_code if interrupted or stop.is_asked() else 0)
 
-    def _rows(self, finished: list[Planned]) -> dict[Planned, Row]:
-        return dict(zip(finished, gather(self.study, self.directory, finished), strict=True))
-
     def _end(self, code: int) -> None:
         """Show what there is, and leave with an exit code that says whether that is all."""
-        imported = [planned.directory for planned in imported_rows(self.study, self.directory)]
-        after = attrs.evolve(self, statuses=survey(self.study, self.directory, imported))
-        rows = self._rows(after.finished)
+        statuses = survey(self.study, self.directory, self.imported)
+        rows = gather(statuses, self.imported)
         write_rows(list(rows.values()), self.directory / ROWS_FILE)
         if is_quiet(self.ctx):
             click.echo(self.directory)
         else:
             output().print(_results(self.study, rows))
-        self._tell_failed(after.statuses)
+        self._tell_failed(statuses)
         if code:
-            left = len(after.statuses) - len(rows)
+            left = len(statuses) - len(rows)
             click.echo(
                 f"Interrupted; {left} runs are left in {self.directory}; the same command goes on", err=True
             )
-        self.ctx.exit(code or int(len(rows) < len(after.statuses)))
+        self.ctx.exit(code or int(len(rows) < len(statuses)))
 
     def _tell_failed(self, statuses: Mapping[Planned, Status]) -> None:
         failed = {planned: status for planned, status in statuses.items() if status.state == "failed"}

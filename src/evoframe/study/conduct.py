@@ -6,7 +6,7 @@ import concurrent.futures
 import contextlib
 import tomllib
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future
 from pathlib import Path
 from typing import Protocol
@@ -83,25 +83,25 @@ def refuse_another(study: Study, directory: Path) -> None:
             raise InputError(f"{path}: is another study; choose another directory:\n  {listed}")
 
 
-def survey(study: Study, directory: Path, imported: Iterable[Path] = ()) -> dict[Planned, Status]:
+def survey(study: Study, directory: Path, imported: Collection[Planned] = ()) -> dict[Planned, Status]:
     """Return how far each run of a study is, in the order of work.
 
     Args:
         study: The study.
         directory: Its directory.
-        imported: Directories of runs whose rows came from elsewhere, and that count as finished.
+        imported: Runs whose rows came from elsewhere, which counts where they are not finished here.
 
     Raises:
         InputError: One of them is damaged, or of another study.
     """
-    elsewhere = set(imported)
     try:
-        return {
-            planned: Status("finished") if planned.directory in elsewhere else status(planned)
-            for planned in study.planned(directory)
-        }
+        own = {planned: status(planned) for planned in study.planned(directory)}
     except InputError as error:
         raise InputError(f"{error}; a run whose directory is removed is made again") from error
+    return {
+        planned: Status("imported") if planned in imported and not found.is_done else found
+        for planned, found in own.items()
+    }
 
 
 def conduct(

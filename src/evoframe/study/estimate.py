@@ -35,12 +35,11 @@ def estimated(missing: Sequence[Planned], finished: Sequence[Planned]) -> Estima
 
     The costs of a run go with its pairs, although those that were simulated before cost little.
     """
-    here = [run for run in finished if run.directory.is_dir()]
     pairs = sum(run.cell.pairs for run in missing)
-    if here:
-        done = sum(run.cell.pairs for run in here)
-        seconds, size = _seconds(here), sum(_size(run) for run in here)
-        return Estimate(seconds / done * pairs, size / done * pairs / 1e6, f"{len(here)} finished runs")
+    if finished:
+        done = sum(run.cell.pairs for run in finished)
+        seconds, size = _seconds(finished), sum(_size(run) for run in finished)
+        return Estimate(seconds / done * pairs, size / done * pairs / 1e6, f"{len(finished)} finished runs")
     size = len(missing) * _BYTES[0] + pairs * _BYTES[1]
     return Estimate(_trial(missing[0]) * pairs if missing else 0.0, size / 1e6, "the first turn of one run")
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
 from evoframe.errors import InputError
 from evoframe.study.plan import Planned, Study, shown
+from evoframe.study.progress import Status
 from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write_rows
 
 __all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
@@ -35,11 +36,11 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> None:
 
 def _joined(study: Study, directory: Path, paths: Iterable[Path]) -> list[Row]:
     """Return the rows that were imported before, and those of more tables."""
-    planned = list(study.planned(directory))
+    planned = _by_key(study, directory)
     kept = {_key(row): row for row in _kept(directory)}
     for path in paths:
         for row in read_rows(path):
-            run = _run_of(row, planned)
+            run = planned.get(_key(row))
             if run is None:
                 raise InputError(f"{path}: {_named(row)}: is no run of this study")
             _refuse_another(row, run, path)
@@ -59,9 +60,9 @@ def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> d
     Raises:
         InputError: They are damaged, or were made otherwise than this study makes them.
     """
-    planned, found = list(study.planned(directory)), {}
+    planned, found = _by_key(study, directory), {}
     for row in _joined(study, directory, more):
-        run = _run_of(row, planned)
+        run = planned.get(_key(row))
         if run is not None:
             _refuse_another(row, run, directory / IMPORTED / ROWS_FILE)
             found[run] = row
@@ -73,37 +74,38 @@ def _kept(directory: Path) -> list[Row]:
     return read_rows(path) if path.is_file() else []
 
 
-def _key(row: Row) -> tuple[Any, ...]:
-    return (*sorted(row.settings.items()), row.run)
+_Key: TypeAlias = tuple[frozenset[tuple[str, str]], int]
+
+
+def _key(row: Row) -> _Key:
+    return frozenset(row.settings.items()), row.run
+
+
+def _by_key(study: Study, directory: Path) -> dict[_Key, Planned]:
+    """Return the runs that are planned, by the keys of their rows."""
+    settings = {cell: frozenset((key, shown(value)) for key, value in cell.settings) for cell in study.cells}
+    return {(settings[run.cell], run.index): run for run in study.planned(directory)}
 
 
 def _named(row: Row) -> str:
     return ", ".join([*(f"{key}={value}" for key, value in row.settings.items()), f"run {row.run}"])
 
 
-def gather(study: Study, directory: Path, finished: Sequence[Planned]) -> list[Row]:
-    """Return the rows of all finished runs, in the order of work.
+def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) -> dict[Planned, Row]:
+    """Return the rows of all runs that are done, in the order of work.
 
-    What a run's own directory says comes before what was imported.
+    Args:
+        statuses: How far each run is.
+        imported: The rows that came from elsewhere.
 
     Raises:
         InputError: The directory of a run is damaged.
     """
-    elsewhere = imported_rows(study, directory)
-    return [elsewhere[run] if _is_elsewhere(run, elsewhere) else row_of(run) for run in finished]
-
-
-def _is_elsewhere(run: Planned, elsewhere: Mapping[Planned, Row]) -> bool:
-    return run in elsewhere and not run.directory.is_dir()
-
-
-def _run_of(row: Row, planned: Iterable[Planned]) -> Planned | None:
-    """Return the run that a row is of; ``None`` if it is not planned."""
-    for run in planned:
-        settings = {key: shown(value) for key, value in run.cell.settings}
-        if run.index == row.run and settings == dict(row.settings):
-            return run
-    return None
+    return {
+        run: imported[run] if status.state == "imported" else row_of(run)
+        for run, status in statuses.items()
+        if status.is_done
+    }
 
 
 def _refuse_another(row: Row, run: Planned, path: Path) -> None:

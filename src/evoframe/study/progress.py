@@ -20,7 +20,7 @@ __all__ = ["FAILURE_FILE", "Status", "forget_failure", "note_failure", "status"]
 FAILURE_FILE = "failure.json"
 """In the directory of a run that failed: why."""
 
-State: TypeAlias = Literal["missing", "begun", "failed", "finished"]
+State: TypeAlias = Literal["missing", "begun", "failed", "finished", "imported"]
 
 
 @attrs.frozen
@@ -28,12 +28,17 @@ class Status:
     """How far a run is.
 
     Attributes:
-        state: ``missing``, ``begun``, ``failed`` or ``finished``.
+        state: ``missing``, ``begun``, ``failed``, ``finished``, or ``imported``: its row came from elsewhere.
         cause: Why it failed.
     """
 
     state: State
     cause: str = ""
+
+    @property
+    def is_done(self) -> bool:
+        """Whether there is a row of it."""
+        return self.state in ("finished", "imported")
 
 
 def status(planned: Planned) -> Status:

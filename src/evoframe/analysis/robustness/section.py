@@ -6,15 +6,13 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from evoframe.analysis.page import Block, Picture, Section, Words
 from evoframe.analysis.robustness.files import SETTING_FILE, read_robustness
 from evoframe.analysis.robustness.findings import find
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.analysis.statistics import Correction
-from evoframe.analysis.writing import svg_of, write_figure
+from evoframe.analysis.writing import Rendered, rendered
 from evoframe.candidates import read_candidates
 from evoframe.files import is_file, shown_name
 from evoframe.measurement import Robustness
@@ -23,7 +21,6 @@ from evoframe.robustness import setting_of
 
 __all__ = ["robustness_report"]
 
-_NAME = "violins"
 _TITLE = "Robustness"
 _STALE = "The measurement that is there is of other champions, or simulates them otherwise than this"
 
@@ -53,8 +50,8 @@ def robustness_report(
     if not _is_of(measured, directory, plugins):
         again = f"evoframe robustness {shown_name(directory)} --force"
         return (), (Section(_TITLE, [Words(f"{_STALE}; to measure again: {again}")]),)
-    figure, words = violins(measured), conclusions(find(measured, correction))
-    return write_figure(figure, target / _NAME), (Section(_TITLE, _blocks(figure, words)),)
+    figure, words = rendered(violins(measured), "violins"), conclusions(find(measured, correction))
+    return figure.write(target), (Section(_TITLE, _blocks(figure, words)),)
 
 
 def _is_of(measured: Robustness, directory: Path, plugins: Plugins) -> bool:
@@ -66,7 +63,7 @@ def _is_of(measured: Robustness, directory: Path, plugins: Plugins) -> bool:
     return simulation == then.simulation and there >= {body.digest for body in now.bodies}
 
 
-def _blocks(figure: Figure, words: str) -> list[Block]:
+def _blocks(figure: Rendered, words: str) -> list[Block]:
     caption = "All bodies with the same random controllers (evoframe robustness)."
     paragraphs = [Words(paragraph) for paragraph in words.strip().split("\n\n")]
-    return [Picture(caption, svg_of(figure, _NAME)), *paragraphs]
+    return [Picture(caption, figure.svg), *paragraphs]
