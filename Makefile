@@ -28,9 +28,9 @@ types: $(VENV)/developing
 imports: $(VENV)/developing
 	$(BIN)/lint-imports
 
-## unit: the tests
+## unit: the tests, on all cores
 unit: $(VENV)/developing
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 ## browser: the pages of reports, in Chromium
 browser: $(VENV)/developing

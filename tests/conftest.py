@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 
 import hypothesis
@@ -14,3 +15,9 @@ hypothesis.settings.register_profile(
     "evoframe", derandomize=True, deadline=None, max_examples=60, print_blob=True
 )
 hypothesis.settings.load_profile("evoframe")
+
+
+def pytest_collection_finish() -> None:
+    """Let no collection of garbage look through thousands of tests: statsmodels has one with every test."""
+    gc.collect()
+    gc.freeze()
