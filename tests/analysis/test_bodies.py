@@ -6,7 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
+from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d import proj3d
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from evoframe import Design, Geometry
@@ -47,6 +51,33 @@ def test_parts_title_and_size_are_named(geometry: Geometry) -> None:
     shown = [text.get_text() for text in figure.texts]
     assert shown[0] == "a body"
     assert shown[1].replace("\u2009", "") == "0.25\u00d70.2\u00d70.2 m"
+
+
+def extent_of(figure: Any, points: Any) -> Bbox:
+    """Where points of the body are in the picture, in pixels."""
+    [axes] = figure.axes
+    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
+    shown = axes.transData.transform(np.column_stack([x, y]))
+    return Bbox([shown.min(axis=0), shown.max(axis=0)])
+
+
+@settings(max_examples=10)
+@given(shape=st.tuples(*[st.integers(1, 12)] * 3))
+def test_a_body_of_any_shape_overlaps_nothing_and_is_not_clipped(shape: tuple[int, int, int]) -> None:
+    design = Design({"morphology": np.ones(shape, np.uint8), "controller": np.zeros(shape)})
+    geometry = Vox().geometry(design, 2)
+    figure = body(geometry, "a body")
+    figure.draw_without_rendering()
+    shown = extent_of(figure, np.concatenate([part.vertices[0] for part in geometry.parts]))
+    [legend], [axes] = figure.legends, figure.axes
+    title, size, *letters = [text.get_window_extent() for text in (*figure.texts, *axes.texts)]
+    assert not any(other.overlaps(shown) for other in (title, size, legend.get_window_extent()))
+    assert not title.overlaps(size)
+    for box in (shown, title, size, *letters):
+        assert min(box.x0, box.y0) >= 0
+        assert box.x1 <= figure.bbox.x1
+        assert box.y1 <= figure.bbox.y1
+    assert shown.width > 0.5 * figure.bbox.width or shown.height > 1.5 * figure.dpi  # and it is large
 
 
 def test_a_later_frame_is_another_picture(geometry: Geometry) -> None:
