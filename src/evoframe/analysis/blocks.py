@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from evoframe.analysis.statistics import Correction, in_notation
+from evoframe.analysis.pairs import find_pair, in_notation
+from evoframe.analysis.statistics import Correction
 
 __all__ = ["BlockComparison", "BlockPair", "compare_blocks"]
 
@@ -38,6 +39,10 @@ class BlockPair:
     second: str
     p: float
     wins: float
+
+    def turned(self) -> BlockPair:
+        """Return the same of the second and the first."""
+        return BlockPair(self.second, self.first, self.p, 1 - self.wins)
 
 
 @attrs.frozen
@@ -78,12 +83,7 @@ class BlockComparison:
         Raises:
             KeyError: One of them is none of the groups.
         """
-        for pair in self.pairs:
-            if (pair.first, pair.second) == (first, second):
-                return pair
-            if (pair.first, pair.second) == (second, first):
-                return BlockPair(first, second, pair.p, 1 - pair.wins)
-        raise KeyError(f"{first}, {second}")
+        return find_pair(self.pairs, first, second)
 
 
 def compare_blocks(values: Mapping[str, Sequence[float]], correction: Correction = "holm") -> BlockComparison:

@@ -9,14 +9,16 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from typing import Literal, Protocol, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Literal, TypeAlias
 
 import attrs
 import numpy as np
 import scikit_posthocs as posthocs
 from numpy.typing import NDArray
 from scipy import stats
+
+from evoframe.analysis.pairs import find_pair, in_notation
 
 __all__ = [
     "CORRECTIONS",
@@ -27,7 +29,6 @@ __all__ = [
     "a12",
     "compare",
     "detectable_a12",
-    "in_notation",
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -80,6 +81,10 @@ class Pairwise:
     p: float
     a12: float
 
+    def turned(self) -> Pairwise:
+        """Return the same of the second and the first."""
+        return Pairwise(self.second, self.first, self.p, 1 - self.a12)
+
 
 @attrs.frozen
 class Comparison:
@@ -119,31 +124,7 @@ class Comparison:
         Raises:
             KeyError: One of them is none of the groups.
         """
-        for pair in self.pairs:
-            if (pair.first, pair.second) == (first, second):
-                return pair
-            if (pair.first, pair.second) == (second, first):
-                return Pairwise(first, second, pair.p, 1 - pair.a12)
-        raise KeyError(f"{first}, {second}")
-
-
-class _Tested(Protocol):
-    @property
-    def p(self) -> float: ...
-
-
-def in_notation(names: Sequence[str], pair: Callable[[str, str], _Tested], alpha: float) -> str:
-    """Return a ranking as the paper writes it: between neighbours stands what their test says.
-
-    Args:
-        names: From the greatest down.
-        pair: Gives the test of two of them.
-        alpha: Below which p two neighbours count as different.
-    """
-    parts = [names[0]]
-    for one, other in itertools.pairwise(names):
-        parts += [">" if pair(one, other).p < alpha else "=", other]
-    return " ".join(parts)
+        return find_pair(self.pairs, first, second)
 
 
 def compare(
