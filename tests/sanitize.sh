@@ -45,4 +45,4 @@ for library in "${libraries[@]}"; do
     [[ $found == "$place"/* ]] || { echo "expected the sanitized build in $place, found $found" >&2; exit 1; }
 done
 # Only what Python prints is captured: a sanitizer's report goes straight to the terminal.
-"$python" -m pytest --capture=sys -p no:cacheprovider "${libraries[@]/#/tests/}" "$@"
+"$python" -m pytest --numprocesses auto --capture=sys -p no:cacheprovider "${libraries[@]/#/tests/}" "$@"
