@@ -19,8 +19,8 @@ def test_groups_that_are_alike() -> None:
     assert "the score is not found to differ as a whole (Kruskal-Wallis, H = " in words
     assert "no pair of them should be called different" in words
     assert (
-        "With 30 runs in the smallest group, a difference is found in four of five cases if one beats"
-        in words
+        "With 30 runs in the smallest group, a difference is found in four of five cases if one is the "
+        "greater in 74% of" in words
     )
     assert "smaller ones cannot be excluded." in words
 
@@ -31,19 +31,25 @@ def test_groups_that_differ() -> None:
     assert words.startswith(
         "Between GM, WM and AM, the score differs as a whole (Kruskal-Wallis, H = 79.12, p < 0.001"
     )
-    assert "GM beats AM in 100% of all comparisons of two runs (p < 0.001)" in words
-    assert "(Dunn's test, corrected after Holm)." in words
+    assert "GM is above AM (the greater in 100% of all comparisons of two runs, p < 0.001)" in words
+    assert ", by Dunn's test, corrected after Holm." in words
     assert "not found to differ" not in words
 
 
 def test_one_that_differs_from_two_that_do_not() -> None:
     groups = {"AM": NOISE[0], "WM": NOISE[1], "GM": [value - 100 for value in NOISE[2]]}
     words = conclusion(compare(groups, "none"), "the score")
-    assert "AM beats GM in 100% of" in words
-    assert (
-        "(Dunn's test, not corrected for the number of pairs). The other pair is not found to differ."
-        in words
-    )
+    assert "AM is above GM (the greater in 100% of" in words
+    assert ", by Dunn's test, not corrected for the number of pairs. The other pair is not found" in words
+    assert "if one is the greater in 71% of" in words  # without a correction
+
+
+def test_pairs_that_differ_alone_are_not_called_different() -> None:
+    low, high = [float(value) for value in range(5)], [float(value) for value in range(3, 8)]
+    comparison = compare({"A": low, "B": high, "C": [2.5, 3.5, 4.5], "D": [2.6, 3.6, 4.6]}, "none")
+    assert comparison.p > 0.05 > comparison.pair("A", "B").p
+    words = conclusion(comparison, "the score")
+    assert "So no pair of them should be called different, whatever tests of pairs alone say (Dunn's" in words
 
 
 def test_many_groups_are_not_listed_pair_by_pair() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from evoframe.analysis.pairs import oriented
 from evoframe.analysis.statistics import Comparison, Pairwise, detectable_a12
 
 __all__ = ["conclusion", "in_words", "listed"]
@@ -41,38 +42,38 @@ def _overall(comparison: Comparison, measure: str) -> str:
 
 
 def _pairs(comparison: Comparison, values: str) -> list[str]:
-    if comparison.p >= comparison.alpha:
-        return ["So no pair of them should be called different, whatever a test of that pair alone says."]
     different = [pair for pair in comparison.pairs if pair.p < comparison.alpha]
     how = f"Dunn's test, {_CORRECTIONS[comparison.correction]}"
+    if comparison.p >= comparison.alpha:
+        alone = f", whatever tests of pairs alone say ({how}), as in the ranking and its letters"
+        return [f"So no pair of them should be called different{alone if different else ''}."]
     if not different:
         return [f"Yet no pair of them can be told apart ({how})."]
     if len(different) > _MOST:
         return [f"{len(different)} of {len(comparison.pairs)} pairs differ ({how}); the tables name them."]
-    sentences = [f"{_greater(pair, values)} (p {in_words(pair.p)})" for pair in different]
+    sentences = [_greater(oriented(pair), values) for pair in different]
     rest = len(comparison.pairs) - len(different)
     others = f" The other {rest} pairs are not found to differ." if rest > 1 else ""
     if rest == 1:
         others = " The other pair is not found to differ."
-    return [f"{listed(sentences)} ({how}).{others}"]
+    return [f"{listed(sentences)}, by {how}.{others}"]
 
 
 def _greater(pair: Pairwise, values: str) -> str:
-    first, second, share = pair.first, pair.second, pair.a12
-    if share < 0.5:
-        first, second, share = second, first, 1 - share
-    return f"{first} beats {second} in {share:.0%} of all comparisons of two {values}"
+    often = f"the greater in {pair.a12:.0%} of all comparisons of two {values}"
+    return f"{pair.first} is above {pair.second} ({often}, p {in_words(pair.p)})"
 
 
 def _limits(comparison: Comparison, values: tuple[str, str]) -> str:
     fewest = min(group.n for group in comparison.groups)
-    found = detectable_a12(fewest, len(comparison.pairs), comparison.alpha)
+    tests = 1 if comparison.correction == "none" else len(comparison.pairs)
+    found = detectable_a12(fewest, tests, comparison.alpha)
     count = f"{fewest} {values[0] if fewest == 1 else values[1]}"
     if fewest < _FEW:
         return f"With {count} in the smallest group, a difference would have to be enormous to be found."
     return (
-        f"With {count} in the smallest group, a difference is found in four of five cases if one beats the "
-        f"other in {found:.0%} of all comparisons of two {values[1]}; smaller ones cannot be excluded."
+        f"With {count} in the smallest group, a difference is found in four of five cases if one is the "
+        f"greater in {found:.0%} of all comparisons of two {values[1]}; smaller ones cannot be excluded."
     )
 
 

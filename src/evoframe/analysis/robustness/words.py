@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from evoframe.analysis.blocks import BlockComparison, BlockPair
+from evoframe.analysis.pairs import oriented
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics import Comparison
 from evoframe.analysis.words import conclusion, in_words, listed
@@ -107,14 +108,12 @@ def _pairs(blocks: BlockComparison) -> str:
         return (
             f"{len(different)} of {len(blocks.pairs)} pairs differ (Wilcoxon's test); the tables name them."
         )
-    return f"{listed([_greater(pair) for pair in different])} (Wilcoxon's test)."
+    return f"{listed([_greater(oriented(pair)) for pair in different])}, by Wilcoxon's test."
 
 
 def _greater(pair: BlockPair) -> str:
-    first, second, wins = pair.first, pair.second, pair.wins
-    if wins < 0.5:
-        first, second, wins = second, first, 1 - wins
-    return f"{first} beats {second} with {wins:.1%} of the controllers (p {in_words(pair.p)})"
+    often = f"the greater with {pair.wins:.1%} of the controllers"
+    return f"{pair.first} is above {pair.second} ({often}, p {in_words(pair.p)})"
 
 
 def _size(found: Findings, blocks: BlockComparison) -> str:
