@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from evoframe.analysis.robustness import SETTING_FILE
 from evoframe.analysis.run_report import write_run_report
 from evoframe.analysis.statistics import Correction
 from evoframe.analysis.study_report import write_study_report
 from evoframe.analysis.writing import Written
 from evoframe.errors import InputError
 from evoframe.files import is_file
+from evoframe.measurement_files import SETTING_FILE
 from evoframe.plugins import Plugins
 from evoframe.store import CONFIG_FILE
 from evoframe.study.conduct import STUDY_FILE
