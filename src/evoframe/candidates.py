@@ -11,7 +11,7 @@ from evoframe.blame import blaming
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_file, shown_name
-from evoframe.jobs import Job, read_job
+from evoframe.jobs import DEFAULT_PRESET, Job, read_job
 from evoframe.layers import Layer
 from evoframe.measurement import Candidate, can_draw, can_publish
 from evoframe.plugins import Plugins
@@ -22,8 +22,6 @@ from evoframe.study.names import name_of
 from evoframe.study.plan import Planned, read_study, shown
 
 __all__ = ["Candidates", "Part", "champions", "read_candidates"]
-
-_DEFAULT = "paper"
 
 
 @attrs.frozen(eq=False)
@@ -185,7 +183,7 @@ def _text(path: Path) -> str:
 
 
 def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
-    return load_config(preset or _DEFAULT, overrides=overrides, plugins=plugins)
+    return load_config(preset or DEFAULT_PRESET, overrides=overrides, plugins=plugins)
 
 
 def _published(config: RunConfig) -> Part:

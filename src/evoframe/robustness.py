@@ -16,6 +16,7 @@ from evoframe.layers import layers_of
 from evoframe.loading import Run
 from evoframe.measurement import Bench, Body, ControllingSimulator, Robustness, Setting, can_draw, digest_of
 from evoframe.plugins import Plugins
+from evoframe.protocols import unit_of
 
 __all__ = ["Measurable", "measurable", "measure", "robustness", "setting_of"]
 
@@ -97,7 +98,7 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
         Body(body.label, body.group, digest_of(_simulator(candidates), body.design), body.source)
         for body in candidates.bodies
     ]
-    unit = str(getattr(config.objective.component, "unit", ""))
+    unit = unit_of(config.objective.component)
     try:
         return Setting(seed, controllers, unit, config.simulation(), tuple(bodies))
     except (TypeError, ValueError) as error:

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from evoframe.analysis.statistics import CORRECTIONS, a12, compare, detectable_a12
+from evoframe.analysis.corrections import CORRECTIONS
+from evoframe.analysis.statistics import a12, compare, detectable_a12
 
 # R's dataset airquality: mean ozone in parts per billion, New York, May to September 1973, without missing
 # values. Source: Chambers et al. 1983, Graphical Methods for Data Analysis.

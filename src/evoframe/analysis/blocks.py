@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import find_pair, in_notation
-from evoframe.analysis.statistics import Correction
 
 __all__ = ["BlockComparison", "BlockPair", "compare_blocks"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.run_report import write_run_report
-from evoframe.analysis.statistics import Correction
 from evoframe.analysis.study_report import write_study_report
 from evoframe.analysis.writing import Written
 from evoframe.errors import InputError

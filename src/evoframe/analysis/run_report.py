@@ -9,11 +9,11 @@ import pandas as pd
 from evoframe.analysis.champion_report import DrawnChampion, champion_sections, drawn, write_champion
 from evoframe.analysis.champions import ChampionData, load_champion
 from evoframe.analysis.charts import lines_chart
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.figures import lines
 from evoframe.analysis.lines import lines_of_run
 from evoframe.analysis.page import Chart, Section, Source, Table, page
 from evoframe.analysis.robustness import robustness_part
-from evoframe.analysis.statistics import Correction
 from evoframe.analysis.tables import versions_table
 from evoframe.analysis.units import axis_title, with_unit
 from evoframe.analysis.writing import Written, prepare_directory, write_bytes, write_figure, write_table

@@ -10,7 +10,7 @@ import itertools
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import attrs
 import numpy as np
@@ -18,12 +18,11 @@ import scikit_posthocs as posthocs
 from numpy.typing import NDArray
 from scipy import stats
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import find_pair, in_notation
 
 __all__ = [
-    "CORRECTIONS",
     "Comparison",
-    "Correction",
     "Group",
     "Pairwise",
     "a12",
@@ -32,10 +31,6 @@ __all__ = [
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
-Correction: TypeAlias = Literal["holm", "bonferroni", "fdr_bh", "none"]
-
-CORRECTIONS: tuple[Correction, ...] = ("holm", "bonferroni", "fdr_bh", "none")
-"""``none`` is what the paper does."""
 
 _FEWEST = 3  # values that Shapiro-Wilk can judge
 

@@ -15,6 +15,7 @@ from evoframe.discovery import discover
 from evoframe.errors import InputError
 from evoframe.files import is_file, read_text, shown_name
 from evoframe.plugins import Plugins
+from evoframe.protocols import unit_of
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
 from evoframe.study.names import called, last_of, title_of
@@ -161,7 +162,7 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
 
 
 def _unit(study: Study) -> str:
-    units: Sequence[str] = [str(getattr(c.config.objective.component, "unit", "")) for c in study.cells]
+    units: Sequence[str] = [unit_of(cell.config.objective.component) for cell in study.cells]
     return units[0] if len(set(units)) == 1 else ""
 
 

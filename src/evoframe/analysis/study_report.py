@@ -11,12 +11,13 @@ import pandas as pd
 from evoframe.analysis.champion_report import champion_sections, drawn, write_champion
 from evoframe.analysis.champions import load_champion
 from evoframe.analysis.charts import finals_chart, lines_chart
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.figures import curves_of, finals, ranks
 from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
 from evoframe.analysis.robustness import robustness_part
 from evoframe.analysis.slugs import slugs
-from evoframe.analysis.statistics import Comparison, Correction
+from evoframe.analysis.statistics import Comparison
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick, load_study
 from evoframe.analysis.tables import (
     Compared,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import oriented
-from evoframe.analysis.statistics import Comparison, Correction, Pairwise, detectable_a12
+from evoframe.analysis.statistics import Comparison, Pairwise, detectable_a12
 
 __all__ = ["conclusion", "corrected", "in_words", "listed"]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,14 +10,15 @@ from typing import Any
 
 import click
 from rich import progress
-from rich.console import Console
 from rich.table import Table
 
+from evoframe.analysis.corrections import Correction
 from evoframe.candidates import read_candidates
 from evoframe.cli.context import (
     common_options,
     correction_option,
     is_quiet,
+    messages,
     needing_extra,
     output,
     plugins_of,
@@ -82,7 +82,7 @@ def robustness(
     out: Path | None,
     force: bool,
     as_json: bool,
-    correction: Any,
+    correction: Correction,
     preset: str | None,
     overrides: tuple[str, ...],
     workers: list[Layer],
@@ -125,9 +125,7 @@ def _default_directory(sources: tuple[Path, ...]) -> Path:
 @contextmanager
 def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
     """Show on a terminal how many simulations are done; yield who is told."""
-    console = Console(
-        stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
-    )
+    console = messages()
     bar = progress.Progress(
         progress.TextColumn("{task.completed:,} of {task.total:,} simulations"),
         progress.BarColumn(bar_width=None),

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import attrs
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.page import Block, Picture, Section, Words
 from evoframe.analysis.robustness.findings import find
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.analysis.statistics import Correction
 from evoframe.analysis.writing import Rendered, rendered
 from evoframe.files import is_file, shown_name
 from evoframe.measurement import Robustness
