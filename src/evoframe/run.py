@@ -15,7 +15,14 @@ import tomli_w
 
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
-from evoframe.errors import ComponentError, ConfigurationError, EvoframeError, InputError, RunError
+from evoframe.errors import (
+    ComponentError,
+    ConfigurationError,
+    EvoframeError,
+    InputError,
+    OccupiedError,
+    RunError,
+)
 from evoframe.evaluation import Evaluator
 from evoframe.exporting import exports
 from evoframe.layers import layers_of
@@ -249,7 +256,8 @@ def prepare(config: RunConfig, out: Path | None = None) -> Execution:
 
     Raises:
         ConfigurationError: A component refuses to start; there is no directory then.
-        InputError: The directory is not empty, or cannot be made.
+        OccupiedError: The directory holds a run, perhaps one that another process has just begun.
+        InputError: It is not empty, or cannot be made.
     """
     coevolution = assemble(config)
     try:
@@ -314,7 +322,9 @@ def _refuse_occupied(directory: Path) -> None:
         finished = has_begun(directory) and load_run(directory).finished
         what = "holds a finished run" if finished else "holds a run that is not finished"
         todo = "" if finished else f"; to go on with it: evoframe resume {directory}"
-        raise InputError(f"{directory}: is not empty: it {what}; choose another directory with --out{todo}")
+        raise OccupiedError(
+            f"{directory}: is not empty: it {what}; choose another directory with --out{todo}"
+        )
     if names:
         raise InputError(f"{directory}: is not empty; choose another directory with --out")
 

@@ -185,6 +185,23 @@ def test_runs_at_which_another_process_is_are_left_to_it(
         assert load_run(config.parent).resumes == []
 
 
+@pytest.mark.parametrize("attempt", range(4))
+def test_processes_that_start_together_divide_the_runs_among_them(
+    toy: list[str], tmp_path: Path, attempt: int
+) -> None:
+    arguments = ["study", *toy, "--workers", "1", "--out", "s"]
+    with started(tmp_path, *arguments) as one, started(tmp_path, *arguments) as other:
+        said = other.communicate(timeout=120)[1] + one.communicate(timeout=120)[1]
+    assert "failed" not in said
+    assert 0 in (one.returncode, other.returncode), said
+    assert {one.returncode, other.returncode} <= {0, 1}, said  # 1: it left the last run to the other
+    assert not list((tmp_path / "s").rglob("failure.json"))
+    assert len((tmp_path / "s" / "rows.csv").read_text().splitlines()) == 13
+    for config in (tmp_path / "s").glob("*/*/0?/config.toml"):
+        assert load_run(config.parent).finished
+        assert load_run(config.parent).resumes == []
+
+
 def test_a_picture_on_a_terminal(toy: list[str], tmp_path: Path) -> None:
     shown = on_a_terminal(["study", *toy], tmp_path, lines=40)
     text = " ".join(re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown).split())  # lines are broken anywhere

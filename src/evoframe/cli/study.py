@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import attrs
@@ -15,7 +16,7 @@ from evoframe.cli.context import common_options, is_quiet, modules_of, output, p
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
 from evoframe.cores import available_cores
-from evoframe.study.conduct import claim, conduct, refuse_another, survey
+from evoframe.study.conduct import alone, claim, conduct, refuse_another, survey
 from evoframe.study.estimate import estimated
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study, read_study, study_names
@@ -89,16 +90,22 @@ def study(
     directory = out or Path("studies") / found.label
     if not dry_run:
         claim(found, directory)
-        if tables:
-            import_rows(found, directory, tables)
     elif directory.exists():
         refuse_another(found, directory)
-    imported = imported_rows(found, directory, tables)
+    imported = _imported(found, directory, tables, dry_run=dry_run)
     sitting = _Sitting(ctx, found, directory, imported, survey(found, directory, imported), retry)
     if dry_run:
         sitting.tell()
         return
     sitting.work(workers or available_cores())
+
+
+def _imported(study: Study, directory: Path, tables: Sequence[Path], *, dry_run: bool) -> dict[Planned, Row]:
+    """Return the rows that came from elsewhere, and keep those of more tables, if that is no dry run."""
+    if dry_run or not tables:
+        return imported_rows(study, directory, tables)
+    with alone(directory):
+        return import_rows(study, directory, tables)
 
 
 @attrs.frozen
@@ -143,19 +150,17 @@ class _Sitting:
         study, modules = self.study, modules_of(self.ctx)
         orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in self.todo}
         with stop_on_signals("the turns in progress") as stop:
-            interrupted = False
-            try:
-                with StudyProgress(study.headings, self.todo, before, quiet=is_quiet(self.ctx)) as progress:
-                    conduct(orders, workers, progress, stop.is_asked)
-            except KeyboardInterrupt:
-                interrupted = True
-        self._end(stop.exit_code if interrupted or stop.is_asked() else 0)
+            progress = StudyProgress(study.headings, self.todo, before, quiet=is_quiet(self.ctx))
+            with contextlib.suppress(KeyboardInterrupt), progress:  # the second signal: it is asked to stop
+                conduct(orders, workers, progress, stop.is_asked)
+        self._end(stop.exit_code if stop.is_asked() else 0)
 
     def _end(self, code: int) -> None:
         """Show what there is, and leave with an exit code that says whether that is all."""
-        statuses = survey(self.study, self.directory, self.imported)
-        rows = gather(statuses, self.imported)
-        write_rows(list(rows.values()), self.directory / ROWS_FILE)
+        with alone(self.directory):  # so that the last process to write has seen what all of them made
+            statuses = survey(self.study, self.directory, self.imported)
+            rows = gather(statuses, self.imported)
+            write_rows(list(rows.values()), self.directory / ROWS_FILE)
         if is_quiet(self.ctx):
             click.echo(self.directory)
         else:

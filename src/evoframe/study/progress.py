@@ -9,9 +9,10 @@ from typing import Literal, TypeAlias
 
 import attrs
 
-from evoframe.errors import InputError
+from evoframe.errors import InputError, LockedError
 from evoframe.files import read_text
 from evoframe.loading import has_begun, load_run
+from evoframe.locking import held
 from evoframe.store import CONFIG_FILE, write_json
 from evoframe.study.plan import Planned
 
@@ -48,9 +49,9 @@ def status(planned: Planned) -> Status:
         InputError: Its directory is damaged, or holds the run of another study.
     """
     directory = planned.directory
-    failure = directory / FAILURE_FILE
-    if failure.is_file():
-        return Status("failed", _cause(failure))
+    cause = _cause(directory / FAILURE_FILE)
+    if cause is not None:
+        return Status("failed", cause)
     if not (directory / CONFIG_FILE).is_file():
         return Status("missing")
     if not has_begun(directory):
@@ -61,9 +62,19 @@ def status(planned: Planned) -> Status:
 
 
 def note_failure(directory: Path, cause: str) -> None:
-    """Note why a run failed, so that it is not begun again before somebody asks for that."""
+    """Note why a run failed, so that it is not begun again before somebody asks for that.
+
+    Nothing is noted where another process is at it already, nor where another one has noted its cause.
+
+    Raises:
+        InputError: The directory cannot be written.
+        RunError: The file cannot be written.
+    """
+    path = directory / FAILURE_FILE
     directory.mkdir(parents=True, exist_ok=True)
-    write_json(directory / FAILURE_FILE, {"cause": cause})
+    with contextlib.suppress(LockedError), held(directory):
+        if not path.exists():
+            write_json(path, {"cause": cause})
 
 
 def forget_failure(directory: Path) -> None:
@@ -71,10 +82,16 @@ def forget_failure(directory: Path) -> None:
     (directory / FAILURE_FILE).unlink(missing_ok=True)
 
 
-def _cause(path: Path) -> str:
-    with contextlib.suppress(ValueError, KeyError, TypeError):
+def _cause(path: Path) -> str | None:
+    """Return why a run failed; ``None`` if it has not, or another process has just begun it again."""
+    try:
         return str(json.loads(read_text(path, 1))["cause"])
-    return "unknown"
+    except InputError as error:
+        if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
+            return None
+        raise
+    except (ValueError, KeyError, TypeError):
+        return "unknown"
 
 
 def _refuse_another(planned: Planned, configuration: object) -> None:

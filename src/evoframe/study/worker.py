@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import attrs
 
 from evoframe.config import RunConfig
 from evoframe.discovery import discover
+from evoframe.errors import OccupiedError
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer, Layers, layer_of
 from evoframe.observers import Observers
@@ -57,6 +59,7 @@ def perform(order: Order, talk: Talk) -> bool:
     """Begin a run, or go on with it; return whether it came to its end.
 
     Raises:
+        LockedError: Another process is at it.
         EvoframeError: It cannot be made, or cannot go on.
     """
     if (order.directory / CONFIG_FILE).exists() and is_finished(order.directory):
@@ -73,9 +76,10 @@ def perform(order: Order, talk: Talk) -> bool:
 def _execution(order: Order, plugins: Plugins) -> Execution:
     config = resolved(order.layers, order.label, plugins)
     alone = _alone(config)
-    if (order.directory / CONFIG_FILE).exists():
-        return reopen(order.directory, alone, plugins)
-    return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+    if not (order.directory / CONFIG_FILE).exists():
+        with contextlib.suppress(OccupiedError):  # by another process, a moment ago
+            return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+    return reopen(order.directory, alone, plugins)
 
 
 def _alone(config: RunConfig) -> list[Layer]:

@@ -1,0 +1,78 @@
+"""What a process of a study does with a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import toys
+
+import evoframe
+from evoframe import Plugins, RunConfig, load_run
+from evoframe.errors import LockedError
+from evoframe.locking import held
+from evoframe.observers import Observers
+from evoframe.run import Execution, prepare
+from evoframe.study import worker
+from evoframe.study.plan import Planned, Study
+from evoframe.study.worker import Order, Talk, perform
+
+Read = Callable[..., Study]
+SILENT = Talk(lambda _: None, lambda: False)
+
+
+@pytest.fixture
+def planned(toy_study: Read, tmp_path: Path) -> tuple[Study, Planned]:
+    """The first run of toys that can be verified."""
+    study = toy_study()
+    return study, list(study.planned(tmp_path / "here"))[1]
+
+
+@pytest.fixture
+def order(planned: tuple[Study, Planned], toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch) -> Order:
+    study, run = planned
+    monkeypatch.setattr(worker, "discover", lambda _: toy_plugins)
+    return Order(run.directory, study.layers_of(run), study.label, (toys.__file__,))
+
+
+def meanwhile(monkeypatch: pytest.MonkeyPatch, first: Callable[[RunConfig, Path], object]) -> None:
+    """Let something happen after it was seen that a run has not begun."""
+
+    def prepared(config: RunConfig, out: Path) -> Execution:
+        first(config, out)
+        return prepare(config, out)
+
+    monkeypatch.setattr(worker, "prepare", prepared)
+
+
+def test_a_run_that_another_process_has_made_meanwhile_is_finished(
+    order: Order, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def make(config: RunConfig, out: Path) -> None:
+        evoframe.run(config, out=out)
+
+    meanwhile(monkeypatch, make)
+    assert perform(order, SILENT)
+    assert load_run(order.directory).resumes == []
+
+
+def test_a_run_that_another_process_has_begun_meanwhile_is_left_to_it(
+    order: Order, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    others: list[Any] = []
+    meanwhile(monkeypatch, lambda config, out: others.append(prepare(config, out)))
+    with pytest.raises(LockedError):
+        perform(order, SILENT)
+    others[0].play(Observers(others[0].config.discovered.manager))
+    assert load_run(order.directory).finished
+
+
+def test_a_run_whose_directory_another_process_has_just_locked_is_left_to_it(
+    order: Order,
+) -> None:
+    order.directory.mkdir(parents=True)
+    with held(order.directory), pytest.raises(LockedError):
+        perform(order, SILENT)
+    assert perform(order, SILENT)
