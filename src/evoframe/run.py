@@ -27,7 +27,7 @@ from evoframe.evaluation import Evaluator
 from evoframe.exporting import exports
 from evoframe.layers import layers_of
 from evoframe.loading import Run, has_begun, load_run
-from evoframe.locking import LOCK_FILE, Lock, locked, released_on_error
+from evoframe.locking import LOCK_FILE, Lock, held, locked, released_on_error
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.population import Population
@@ -231,18 +231,20 @@ def verify_champion(config: RunConfig, directory: Path) -> Verification | None:
         The verification; ``None`` if the simulator offers no variants.
 
     Raises:
+        LockedError: Another process writes to the directory.
         RunError: It cannot be done. The run itself is complete and saved.
     """
     if not can_verify(config.simulator.component):
         return None
-    try:
-        champion = load_run(directory).champion
-        [verification] = verified(config, [champion.design], champion.score)
-        keep_verification(directory, verification)
-    except Exception as error:
-        cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
-        complete = f"{directory}: the run is complete and saved"
-        raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
+    with held(directory):
+        try:
+            champion = load_run(directory).champion
+            [verification] = verified(config, [champion.design], champion.score)
+            keep_verification(directory, verification)
+        except Exception as error:
+            cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
+            complete = f"{directory}: the run is complete and saved"
+            raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
     return verification
 
 

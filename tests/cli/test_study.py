@@ -35,6 +35,8 @@ def tables(directory: Path) -> dict[str, list[list[str]]]:
         header, *lines = csv.reader((directory / name).read_text().splitlines())
         kept = [i for i, column in enumerate(header) if column not in ("seconds", "simulations")]
         found[name] = [[line[i] for i in kept] for line in (header, *lines)]
+    for path in directory.rglob("verification.json"):
+        found[str(path.relative_to(directory))] = [[path.read_text()]]
     return found
 
 
@@ -114,6 +116,27 @@ def test_runs_that_fail_are_listed_and_retried_on_demand(
     assert "runs done" not in again.stderr
     (tmp_path / "sound").touch()
     assert evoframe(*arguments, "--retry").returncode == 0
+
+
+def test_champions_that_were_not_verified_are_verified_by_the_next_sitting(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    unverifiable = 'grid.simulator=[{name="toy-unverifiable", mended="mended"}]'
+    arguments = ["study", *toy, "--set", unverifiable, "--set", "runs=1", "--out", "s"]
+    failed = evoframe(*arguments)
+    assert failed.returncode == 1
+    assert "but its champion cannot be verified: no variant fits" in failed.stderr
+    (tmp_path / "mended").touch()
+    assert evoframe(*arguments).returncode == 1  # not tried again
+    first, second = (tmp_path / "s").glob("*/*/00")
+    (first / "failure.json").unlink()  # as if the process had been killed before it verified
+    left = evoframe(*arguments, "--dry-run", "--retry")
+    assert "1 finished, of which 1 to verify, 1 to run" in left.stdout
+    assert evoframe(*arguments).returncode == 1  # the second has failed
+    assert evoframe(*arguments, "--retry").returncode == 0
+    for directory in (first, second):
+        assert load_run(directory).verification is not None
+        assert load_run(directory).resumes == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])

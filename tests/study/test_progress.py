@@ -8,7 +8,8 @@ import pytest
 
 from evoframe.locking import held
 from evoframe.study.plan import Planned, Study
-from evoframe.study.progress import FAILURE_FILE, forget_failure, note_failure, status
+from evoframe.study.progress import FAILURE_FILE, Status, forget_failure, note_failure, status
+from evoframe.verification import VERIFICATION_FILE
 
 Made = tuple[Study, Path, list[Planned]]
 
@@ -34,6 +35,16 @@ def test_no_failure_is_noted_of_a_run_at_which_another_process_is(made: Made) ->
     with held(planned.directory):
         note_failure(planned.directory, "a fault")
     assert status(planned).state == "finished"
+
+
+def test_a_finished_run_is_complete_when_it_is_verified_or_cannot_be(made: Made) -> None:
+    never, varied, *_ = made[2]
+    assert not (never.directory / VERIFICATION_FILE).exists()
+    assert status(never) == status(varied) == Status("finished")
+    (varied.directory / VERIFICATION_FILE).unlink()
+    assert status(varied) == Status("finished", verified=False)
+    assert status(varied).is_done
+    assert not status(varied).is_complete
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}"])

@@ -18,6 +18,7 @@ from evoframe.run import Execution, prepare
 from evoframe.study import worker
 from evoframe.study.plan import Planned, Study
 from evoframe.study.worker import Order, Talk, perform
+from evoframe.verification import VERIFICATION_FILE
 
 Read = Callable[..., Study]
 SILENT = Talk(lambda _: None, lambda: False)
@@ -76,3 +77,17 @@ def test_a_run_whose_directory_another_process_has_just_locked_is_left_to_it(
     with held(order.directory), pytest.raises(LockedError):
         perform(order, SILENT)
     assert perform(order, SILENT)
+
+
+def test_a_finished_run_is_only_verified_and_only_once(order: Order) -> None:
+    assert perform(order, SILENT)
+    verification = order.directory / VERIFICATION_FILE
+    made, database = verification.read_bytes(), (order.directory / "run.db").read_bytes()
+    verification.unlink()
+    with held(order.directory), pytest.raises(LockedError):  # somebody verifies it just now
+        perform(order, SILENT)
+    assert perform(order, SILENT)
+    assert verification.read_bytes() == made
+    assert (order.directory / "run.db").read_bytes() == database
+    with held(order.directory):
+        assert perform(order, SILENT)

@@ -120,23 +120,28 @@ class _Sitting:
     retry: bool
 
     @property
-    def todo(self) -> list[Planned]:
+    def to_run(self) -> list[Planned]:
         return self._that_are("missing", "begun", *(["failed"] if self.retry else []))
+
+    @property
+    def to_verify(self) -> list[Planned]:
+        return [planned for planned in self._that_are("finished") if not self.statuses[planned].verified]
 
     def _that_are(self, *states: str) -> list[Planned]:
         return [planned for planned, status in self.statuses.items() if status.state in states]
 
     def tell(self) -> None:
         """Say what would be run."""
-        estimate = estimated(self.todo, self._that_are("finished"))
+        estimate = estimated(self.to_run, self._that_are("finished"))
         done = self._that_are("finished", "imported")
         cores = available_cores()
         table = Table(box=None, show_header=False)
         table.add_column(style="bold", no_wrap=True)
         table.add_column(overflow="fold")
         table.add_row("configurations", f"{len(self.study.cells)}, {self.study.runs} runs each")
-        table.add_row("runs", f"{len(done)} finished, {len(self.todo)} to run")
-        table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.todo):,} to score")
+        unverified = f", of which {len(self.to_verify)} to verify" if self.to_verify else ""
+        table.add_row("runs", f"{len(done)} finished{unverified}, {len(self.to_run)} to run")
+        table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.to_run):,} to score")
         table.add_row(
             "time", f"{duration(estimate.seconds / cores)} on {cores} cores, from {estimate.measured}"
         )
@@ -146,11 +151,13 @@ class _Sitting:
 
     def work(self, workers: int) -> None:
         """Run what is missing, and show what came of it."""
-        before = {planned: row.score for planned, row in gather(self.statuses, self.imported).items()}
+        todo = [*self.to_verify, *self.to_run]
+        rows = gather(self.statuses, self.imported)
+        before = {planned: row.score for planned, row in rows.items() if self.statuses[planned].is_complete}
         study, modules = self.study, modules_of(self.ctx)
-        orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in self.todo}
+        orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in todo}
         with stop_on_signals("the turns in progress") as stop:
-            progress = StudyProgress(study.headings, self.todo, before, quiet=is_quiet(self.ctx))
+            progress = StudyProgress(study.headings, todo, before, quiet=is_quiet(self.ctx))
             with contextlib.suppress(KeyboardInterrupt), progress:  # the second signal: it is asked to stop
                 conduct(orders, workers, progress, stop.is_asked)
         self._end(stop.exit_code if stop.is_asked() else 0)
@@ -166,12 +173,12 @@ class _Sitting:
         else:
             output().print(_results(self.study, rows))
         self._tell_failed(statuses)
+        left = sum(not status.is_complete for status in statuses.values())
         if code:
-            left = len(statuses) - len(rows)
             click.echo(
                 f"Interrupted; {left} runs are left in {self.directory}; the same command goes on", err=True
             )
-        self.ctx.exit(code or int(len(rows) < len(statuses)))
+        self.ctx.exit(code or int(left > 0))
 
     def _tell_failed(self, statuses: Mapping[Planned, Status]) -> None:
         failed = {planned: status for planned, status in statuses.items() if status.state == "failed"}

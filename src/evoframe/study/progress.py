@@ -13,6 +13,7 @@ from evoframe.errors import InputError, LockedError
 from evoframe.files import read_text
 from evoframe.loading import has_begun, load_run
 from evoframe.locking import held
+from evoframe.resuming import is_verified
 from evoframe.store import CONFIG_FILE, write_json
 from evoframe.study.plan import Planned
 
@@ -31,15 +32,22 @@ class Status:
     Attributes:
         state: ``missing``, ``begun``, ``failed``, ``finished``, or ``imported``: its row came from elsewhere.
         cause: Why it failed.
+        verified: Where it is finished: whether its champion was verified, or cannot be.
     """
 
     state: State
     cause: str = ""
+    verified: bool = True
 
     @property
     def is_done(self) -> bool:
         """Whether there is a row of it."""
         return self.state in ("finished", "imported")
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether nothing is left to do."""
+        return self.is_done and self.verified
 
 
 def status(planned: Planned) -> Status:
@@ -58,7 +66,9 @@ def status(planned: Planned) -> Status:
         return Status("begun")
     run = load_run(directory)
     _refuse_another(planned, run.configuration)
-    return Status("finished" if run.finished else "begun")
+    if not run.finished:
+        return Status("begun")
+    return Status("finished", verified=is_verified(run, planned.cell.config))
 
 
 def note_failure(directory: Path, cause: str) -> None:

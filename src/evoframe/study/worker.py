@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from evoframe.layers import Layer, Layers, layer_of
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.resolve import resolved
-from evoframe.resuming import is_finished, reopen
+from evoframe.resuming import is_finished, reopen, verify_if_missing
 from evoframe.run import Execution, prepare
 from evoframe.store import CONFIG_FILE
 from evoframe.values import Turn
@@ -56,16 +56,20 @@ class Talk:
 
 
 def perform(order: Order, talk: Talk) -> bool:
-    """Begin a run, or go on with it; return whether it came to its end.
+    """Begin a run, or go on with it, and verify its champion; return whether it came to its end.
 
     Raises:
         LockedError: Another process is at it.
-        EvoframeError: It cannot be made, or cannot go on.
+        EvoframeError: It cannot be made, cannot go on, or cannot be verified.
     """
-    if (order.directory / CONFIG_FILE).exists() and is_finished(order.directory):
-        return True  # by another process, meanwhile
     plugins = discover(order.modules)
-    execution = _execution(order, plugins)
+    config = resolved(order.layers, order.label, plugins)
+    alone = _alone(config)
+    execution = _begun(order, alone, plugins)
+    if execution is None and is_finished(order.directory):
+        verify_if_missing(order.directory, alone, plugins)
+        return True
+    execution = execution or reopen(order.directory, alone, plugins)
     plugins.manager.register(_Teller(str(order.directory), talk), name="evoframe:study")
     completed = execution.play(Observers(plugins.manager), talk.stop)
     if completed:
@@ -73,13 +77,12 @@ def perform(order: Order, talk: Talk) -> bool:
     return completed
 
 
-def _execution(order: Order, plugins: Plugins) -> Execution:
-    config = resolved(order.layers, order.label, plugins)
-    alone = _alone(config)
+def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
+    """Return a new run; ``None`` if there is one already."""
     if not (order.directory / CONFIG_FILE).exists():
         with contextlib.suppress(OccupiedError):  # by another process, a moment ago
             return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
-    return reopen(order.directory, alone, plugins)
+    return None
 
 
 def _alone(config: RunConfig) -> list[Layer]:
