@@ -7,12 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import pytest
 from toy_study import STUDY
 
 from evoframe import ConfigurationError, run
 from evoframe.discovery import discover
 from evoframe.study.plan import Study, read_study, study_names
+from evoframe.study.rows import Row
 
 Read = Callable[..., Study]
 
@@ -107,6 +109,11 @@ class TestSeeds:
             "grid: collaboration.m=1: collaboration.m: unknown option",
         ),
         (('"collaboration.n"', '"run.seed"'), "grid: run.seed: seeds are derived"),
+        (
+            ('"collaboration.n" = [1, 2]', "run = [{ generations = 2 }, { seed = 4 }]"),
+            "grid: run: is a column of the study's tables already; give its settings one by one",
+        ),
+        (("[1, 2]", '[1, "1"]'), 'grid.collaboration.n: expected different values, found [1, "1"]'),
         (('"collaboration.n"', '"a b"'), "grid: 'a b' is no key"),
         (("[grid]", "[grit]"), "grid: is missing"),
         (("runs = 3", "runs = 1000000"), "a study of 4000000 runs; at most 1000000"),
@@ -116,6 +123,12 @@ def test_mistakes_are_named(toy_study: Read, change: tuple[str, str], message: s
     with pytest.raises(ConfigurationError) as caught:
         toy_study(text=STUDY.replace(*change))
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("column", [*attrs.fields_dict(Row), "curve"])
+def test_no_key_of_a_grid_is_called_like_a_column(toy_study: Read, column: str) -> None:
+    with pytest.raises(ConfigurationError):
+        toy_study(text=STUDY.replace('"collaboration.n" = [1, 2]', f"{column} = [{{ generations = 2 }}]"))
 
 
 def test_a_study_that_is_nowhere_is_said_to_be(toy_plugins: Any) -> None:

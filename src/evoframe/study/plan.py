@@ -203,7 +203,12 @@ def _grid(tree: Mapping[str, Any], origin: str) -> dict[str, tuple[Any, ...]]:
     for key, values in grid.items():
         if key == "run.seed":
             raise ConfigurationError(f"{origin}: grid: run.seed: seeds are derived; say with runs how many")
-        texts = [_identity(value) for value in values]
+        if key == "run":  # may set the seed too
+            raise ConfigurationError(
+                f"{origin}: grid: run: is a column of the study's tables already; give its settings one by "
+                "one, as in run.generations = [100, 200]"
+            )
+        texts = [shown(value) for value in values]
         if not values or len(set(texts)) < len(texts):
             raise ConfigurationError(
                 f"{origin}: grid.{key}: expected different values, found {found(list(values))}"
@@ -242,7 +247,7 @@ def _layers(settings: Settings) -> list[Layer]:
 
 
 def shown(value: Any) -> str:
-    """Return a value of the grid as text, the same for the same value only."""
+    """Return a value of the grid as text: another for each value of a key, or the grid is refused."""
     return value if isinstance(value, str) else _identity(value)
 
 
