@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,18 +11,19 @@ import pytest
 import toys
 
 import evoframe
-from evoframe import Plugins, RunConfig, load_run
+from evoframe import Plugins, RunConfig, assemble, load_run
 from evoframe.errors import LockedError
 from evoframe.locking import held
 from evoframe.observers import Observers
+from evoframe.resolve import resolved
 from evoframe.run import Execution, prepare
 from evoframe.study import worker
 from evoframe.study.plan import Planned, Study
-from evoframe.study.worker import Order, Talk, perform
+from evoframe.study.worker import Order, Talk, _Teller, perform
 from evoframe.verification import VERIFICATION_FILE
 
 Read = Callable[..., Study]
-SILENT = Talk(lambda _: None, lambda: False)
+SILENT = Talk(lambda _, __: None, lambda: False)
 
 
 @pytest.fixture
@@ -91,3 +93,19 @@ def test_a_finished_run_is_only_verified_and_only_once(order: Order) -> None:
     assert (order.directory / "run.db").read_bytes() == database
     with held(order.directory):
         assert perform(order, SILENT)
+
+
+@pytest.mark.parametrize(("pace", "turns"), [(0.0, [0]), (0.1, [0, 3, 6]), (1.0, [*range(9)])])
+def test_turns_are_told_not_more_often_than_anybody_looks(
+    order: Order, toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch, pace: float, turns: list[int]
+) -> None:
+    clock = itertools.count()
+    monkeypatch.setattr("time.monotonic", lambda: next(clock) * pace)
+    told: list[tuple[int, float | None]] = []
+    teller = _Teller(Talk(lambda turn, best: told.append((turn, best)), lambda: False))
+    made, best = [], None
+    for turn in assemble(resolved(order.layers, order.label, toy_plugins)):
+        teller.evoframe_turn_finished(turn)
+        best = turn.best_pair.score if turn.best_pair else best
+        made.append((turn.index, best))
+    assert told == [made[turn] for turn in turns]

@@ -170,7 +170,7 @@ class _Conduct:
         self.watcher.began(planned)
 
     def _pass_on(self) -> None:
-        running = {str(planned.directory): planned for planned in self.running.values()}
+        running = {planned.directory: planned for planned in self.running.values()}
         for directory, turn, best in self.pool.news():
             if directory in running:
                 self.watcher.told(running[directory], turn, best)

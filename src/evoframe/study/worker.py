@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import math
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,8 @@ from evoframe.values import Turn
 
 __all__ = ["Order", "Talk", "perform"]
 
+_INTERVAL = 0.25  # s, between two things that are told of a run
+
 
 @attrs.frozen
 class Order:
@@ -44,14 +48,14 @@ class Order:
 
 @attrs.frozen
 class Talk:
-    """How a process of a study and the one that started it talk; both fields work across processes.
+    """How a process of a study and the one that started it talk about a run.
 
     Attributes:
-        tell: Takes a directory, the latest turn, and the best score so far.
+        tell: Takes the latest turn, and the best score since work on the run began.
         stop: Says whether to stop after the turn in progress.
     """
 
-    tell: Callable[[tuple[str, int, float | None]], None]
+    tell: Callable[[int, float | None], None]
     stop: Callable[[], bool]
 
 
@@ -70,7 +74,7 @@ def perform(order: Order, talk: Talk) -> bool:
         verify_if_missing(order.directory, alone, plugins)
         return True
     execution = execution or reopen(order.directory, alone, plugins)
-    plugins.manager.register(_Teller(str(order.directory), talk), name="evoframe:study")
+    plugins.manager.register(_Teller(talk), name="evoframe:study")
     completed = execution.play(Observers(plugins.manager), talk.stop)
     if completed:
         execution.verify()
@@ -94,14 +98,18 @@ def _alone(config: RunConfig) -> list[Layer]:
 
 
 class _Teller:
-    """Tells of every turn."""
+    """Tells of the turns, but not more often than anybody looks."""
 
-    def __init__(self, directory: str, talk: Talk) -> None:
-        self._directory, self._talk = directory, talk
+    def __init__(self, talk: Talk) -> None:
+        self._talk = talk
         self._best: float | None = None
+        self._told = -math.inf
 
     @hookimpl
     def evoframe_turn_finished(self, turn: Turn) -> None:
         if turn.best_pair is not None:
             self._best = turn.best_pair.score
-        self._talk.tell((self._directory, turn.index, self._best))
+        now = time.monotonic()
+        if now - self._told >= _INTERVAL:
+            self._told = now
+            self._talk.tell(turn.index, self._best)
