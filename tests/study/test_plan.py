@@ -9,14 +9,24 @@ from typing import Any
 
 import attrs
 import pytest
+import tomli_w
 from toy_study import STUDY
 
 from evoframe import ConfigurationError, run
+from evoframe.coevolution import first_meetings
 from evoframe.discovery import discover
 from evoframe.study.plan import Study, read_study, study_names
 from evoframe.study.rows import Row
 
 Read = Callable[..., Study]
+
+THREE = """
+extends = "toy.toml"
+runs = 1
+
+[grid]
+"collaboration.n" = [2]
+"""
 
 
 def seeds(study: Study) -> dict[tuple[str, int], int]:
@@ -58,6 +68,24 @@ class TestCells:
             made = run(cell.config, out=tmp_path / cell.folder)
             turns = cell.config.run.generations * len(cell.config.populations)
             assert cell.pairs == sum(row["pairs"] for row in made.workload if row["turn"] <= turns)
+
+    @pytest.mark.parametrize("sizes", [(2, 2, 3), (3, 2, 2), (2, 4, 3)])
+    def test_of_three_populations_count_their_pairs_too(
+        self, toy_study: Read, tmp_path: Path, sizes: tuple[int, int, int]
+    ) -> None:
+        populations = {
+            role: {
+                "size": size,
+                "encoder": {"name": "toy-number", "role": role},
+                "evolver": "toy-drift",
+            }
+            for role, size in zip("abc", sizes, strict=True)
+        }
+        text = tomli_w.dumps({"populations": populations})
+        [cell] = toy_study("runs=1", text=f"{THREE}\n{text}").cells
+        made = run(cell.config, out=tmp_path / "run")
+        assert made.workload[0]["pairs"] == len(first_meetings(sizes))
+        assert cell.pairs == sum(row["pairs"] for row in made.workload if row["turn"] <= 12)
 
 
 class TestOrder:
