@@ -15,6 +15,7 @@ from processes import Evoframe, on_a_terminal, started, told
 from toy_study import STUDY
 
 from evoframe import load_run
+from evoframe.cores import available_cores
 
 SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
 
@@ -61,6 +62,16 @@ def test_a_dry_run_says_how_much_it_is_and_writes_nothing(
     assert "0 finished, 12 to run" in told_of.stdout
     assert "from the first turn of one run" in told_of.stdout
     assert not (tmp_path / "studies").exists()
+
+
+def test_a_dry_run_counts_on_the_workers_that_are_asked_for(evoframe: Evoframe, toy: list[str]) -> None:
+    alone = evoframe("study", *toy, "--dry-run", "--workers", "1").stdout
+    assert "on 1 core, from" in alone
+    one = ("--set", "runs=1", "--set", "grid.collaboration.n=[1]", "--set", "grid.simulator=['toy-product']")
+    assert "on 1 core, from" in evoframe("study", *toy, *one, "--dry-run", "--workers", "8").stdout
+    for workers in ((), ("--workers", "1000")):
+        together = evoframe("study", *toy, "--dry-run", *workers).stdout
+        assert f"on {min(12, available_cores())} core" in together
 
 
 def test_a_dry_run_changes_nothing_that_is_there(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:

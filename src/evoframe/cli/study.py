@@ -95,7 +95,7 @@ def study(
     imported = _imported(found, directory, tables, dry_run=dry_run)
     sitting = _Sitting(ctx, found, directory, imported, survey(found, directory, imported), retry)
     if dry_run:
-        sitting.tell()
+        sitting.tell(workers or available_cores())
         return
     sitting.work(workers or available_cores())
 
@@ -130,11 +130,11 @@ class _Sitting:
     def _that_are(self, *states: str) -> list[Planned]:
         return [planned for planned, status in self.statuses.items() if status.state in states]
 
-    def tell(self) -> None:
-        """Say what would be run."""
+    def tell(self, workers: int) -> None:
+        """Say what would be run by so many workers."""
         estimate = estimated(self.to_run, self._that_are("finished"))
         done = self._that_are("finished", "imported")
-        cores = available_cores()
+        cores = max(1, min(workers, available_cores(), len(self.to_run)))  # that have something to do
         table = Table(box=None, show_header=False)
         table.add_column(style="bold", no_wrap=True)
         table.add_column(overflow="fold")
@@ -142,9 +142,8 @@ class _Sitting:
         unverified = f", of which {len(self.to_verify)} to verify" if self.to_verify else ""
         table.add_row("runs", f"{len(done)} finished{unverified}, {len(self.to_run)} to run")
         table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.to_run):,} to score")
-        table.add_row(
-            "time", f"{duration(estimate.seconds / cores)} on {cores} cores, from {estimate.measured}"
-        )
+        on = "1 core" if cores == 1 else f"{cores} cores"
+        table.add_row("time", f"{duration(estimate.seconds / cores)} on {on}, from {estimate.measured}")
         table.add_row("room", f"{estimate.megabytes:,.0f} MB in {self.directory}")
         output().print(table)
         self._tell_failed(self.statuses)
