@@ -7,6 +7,8 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import pebble
@@ -14,7 +16,7 @@ import pytest
 from chatter import chatter
 
 from evoframe.layers import Layers
-from evoframe.study.pool import Pool
+from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.worker import Order
 
 LOST, OTHER = Path("lost"), Path("other")
@@ -56,3 +58,22 @@ def test_the_others_go_on_when_one_is_killed_while_it_tells(pool: Pool) -> None:
     for _ in pool.news():
         pass
     other.result(60)
+
+
+def expired(code: int) -> Exception:
+    return pebble.ProcessExpired("", code)  # type: ignore[no-untyped-call]
+
+
+@pytest.mark.parametrize(
+    ("error", "cause"),
+    [
+        (expired(-signal.SIGKILL), "its process ended with the signal SIGKILL"),
+        (expired(3), "its process ended with exit code 3"),
+        (BrokenProcessPool(), "there was no process to make it"),
+    ],
+)
+def test_work_that_took_its_process_along_has_failed(error: Exception, cause: str) -> None:
+    future: Future[End] = Future()
+    future.set_exception(error)
+    assert end_of(future).state == "failed"
+    assert end_of(future).cause.startswith(cause)
