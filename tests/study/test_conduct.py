@@ -56,6 +56,28 @@ def test_what_is_somebody_elses_stays_as_it_is(toy_study: Read, tmp_path: Path) 
     assert [path.name for path in (tmp_path / "there").iterdir()] == ["letter"]
 
 
+@pytest.mark.parametrize(
+    ("fewer", "lines"),
+    [
+        (("runs=1",), ["runs: 3 there, 1 now"]),
+        (("grid.collaboration.n=[2]",), ["grid.collaboration.n: 1 there, not now"]),
+        (("runs=2", "grid.simulator=['toy-product']"), ["runs: 3 there, 2 now", "grid.simulator: {"]),
+    ],
+)
+def test_a_study_is_not_made_smaller(
+    toy_study: Read, tmp_path: Path, fewer: tuple[str, ...], lines: list[str]
+) -> None:
+    there = tmp_path / "there"
+    claim(toy_study(), there)
+    before = (there / STUDY_FILE).read_bytes()
+    with pytest.raises(InputError, match=r"study\.toml: has more than what is asked for") as caught:
+        claim(toy_study(*fewer), there)
+    for told, line in zip(str(caught.value).splitlines()[1:], lines, strict=True):
+        assert told.strip().startswith(line)
+    assert (there / STUDY_FILE).read_bytes() == before
+    claim(toy_study("runs=4", "grid.collaboration.n=[1, 2, 3]"), there)
+
+
 class Workers(Pool):
     """In place of a pool: each run ends as soon as it is asked how the study goes on."""
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from evoframe import InputError, load_run
+from evoframe import InputError, load_run, run
 from evoframe.study.conduct import claim, survey
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study
@@ -127,7 +127,8 @@ def test_rows_of_elsewhere_stand_for_runs_that_are_not_finished_here(
         (("toy-product,0,", "toy-product,0,1"), "was made with another configuration or seed"),
         (("toy-product,0,", "toy-product,zero,"), "line 2: is no row of a study"),
         (("toy-product,0,", "toy-product,0,,"), "its lines are of different lengths"),
-        (("run,seed", "run,seeds"), "line 2: is no row of a study: 'seed'"),
+        (("run,seed", "run,seeds"), "is no table of a study: it has no column seed"),
+        ((",0.1.0,", ",0.1.0,nan,"), "is no table: its lines are of different lengths"),
     ],
 )
 def test_rows_of_something_else_are_refused(
@@ -164,3 +165,55 @@ def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, li
     write_rows([attrs.evolve(rows[0], champion="other")], directory / "rows.csv")
     with pytest.raises(InputError, match="another champion than in the rows imported before"):
         import_rows(study, directory, [directory / "rows.csv"])
+
+
+def changed(path: Path, change: Callable[[list[str]], list[str]]) -> None:
+    path.write_text("\n".join([*change(path.read_text().splitlines()), ""]))
+
+
+def test_a_score_that_is_no_number_is_refused(made: tuple[Study, Path, list[Planned]]) -> None:
+    study, directory, _ = made
+    [row, *_] = kept(study, directory)
+    path = directory / "rows.csv"
+    path.write_text(path.read_text().replace(f",{row.score!r},", ",nan,", 1))
+    with pytest.raises(
+        InputError, match=r"rows\.csv: line 2: is no row of a study: expected a number, found nan"
+    ):
+        import_rows(study, directory, [path])
+
+
+def test_curves_that_are_cut_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
+    study, directory, _ = made
+    kept(study, directory)
+    changed(directory / "curves.csv", lambda lines: [line.rpartition(",")[0] for line in lines])
+    with pytest.raises(
+        InputError, match=r"curves\.csv: the \w+ of line \d of rows\.csv does not end as that"
+    ):
+        import_rows(study, directory, [directory / "rows.csv"])
+
+
+def test_rows_of_runs_of_different_lengths_are_read_again(toy_study: Read, tmp_path: Path) -> None:
+    study = toy_study(text='extends = "toy.toml"\nruns = 1\n[grid]\n"run.generations" = [1, 3]\n')
+    directory = tmp_path / "here"
+    for each in study.planned(directory):
+        config = each.cell.config
+        run(attrs.evolve(config, run=attrs.evolve(config.run, seed=each.seed)), out=each.directory)
+    rows = kept(study, directory)
+    assert sorted(len(row.fitness_curve) for row in rows) == [2, 4]
+    again = read_rows(directory / "rows.csv")
+    assert [len(row.score_curve) for row in again] == [len(row.score_curve) for row in rows]
+
+
+def test_curves_can_be_imported_later(made: tuple[Study, Path, list[Planned]], tmp_path: Path) -> None:
+    study, directory, _ = made
+    kept(study, directory)
+    there, curves = tmp_path / "there", directory / "curves.csv"
+    claim(study, there)
+    text = curves.read_text()
+    changed(curves, lambda lines: lines[:2])  # of one run, and of that one of two
+    import_rows(study, there, [directory / "rows.csv"])
+    lengths = [len(row.fitness_curve) for row in imported_rows(study, there).values()]
+    assert sorted(lengths) == [0, 0, 0, 5]
+    curves.write_text(text)
+    import_rows(study, there, [directory / "rows.csv"])
+    assert {len(row.fitness_curve) for row in imported_rows(study, there).values()} == {5}

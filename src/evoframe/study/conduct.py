@@ -6,10 +6,10 @@ import concurrent.futures
 import contextlib
 import tomllib
 from collections import deque
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import attrs
 import tomli_w
@@ -19,7 +19,7 @@ from evoframe.files import read_text
 from evoframe.locking import held_after_others
 from evoframe.provenance import differences
 from evoframe.store import is_leftover, write_atomically
-from evoframe.study.plan import Planned, Study
+from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.progress import Status, forget_failure, note_failure, status
 from evoframe.study.worker import Order
@@ -81,18 +81,26 @@ def alone(directory: Path) -> contextlib.AbstractContextManager[None]:
 def refuse_another(study: Study, directory: Path) -> None:
     """Make sure that a directory is empty, or that of this study.
 
-    More runs and more values of the grid are welcome; all other settings must be those that it has.
+    More runs and more values of the grid are welcome, fewer are not; all other settings must be those that it
+    has.
 
     Raises:
-        InputError: It is the directory of another study, or of something else.
+        InputError: It is the directory of another study, or of something else, or has more.
     """
     path = directory / STUDY_FILE
     occupied = _is_occupied(directory)
     if path.is_file():  # only now: another process makes it before anything else
-        others = differences(_shared(_read(path)), _shared(_tables(study)))
+        there = _read(path)
+        others = differences(_shared(there), _shared(_tables(study)))
         if others:
             listed = "\n  ".join(others)
             raise InputError(f"{path}: is another study; choose another directory:\n  {listed}")
+        if gone := [*_gone(there, study)]:
+            listed = "\n  ".join(gone)
+            raise InputError(
+                f"{path}: has more than what is asked for, and would forget it; ask for all of it, or choose "
+                f"another directory with --out:\n  {listed}"
+            )
     elif occupied:
         raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
 
@@ -181,17 +189,29 @@ class _Conduct:
         self.watcher.ended(planned, end)
 
 
-def _tables(study: Study) -> dict[str, object]:
+def _tables(study: Study) -> dict[str, Any]:
     """Return the study as TOML tables that need no other file."""
     return {"extends": False, "runs": study.runs, **study.layers.merged(), "grid": dict(study.grid)}
 
 
-def _shared(tables: dict[str, object]) -> dict[str, object]:
+def _shared(tables: dict[str, Any]) -> dict[str, Any]:
     """Return what all runs of a study share, and what decides them."""
     return {key: value for key, value in tables.items() if key not in ("runs", "grid", "executor")}
 
 
-def _read(path: Path) -> dict[str, object]:
+def _gone(there: Mapping[str, Any], study: Study) -> Iterator[str]:
+    """Say what a study's file has and the study has not."""
+    runs, grid = there.get("runs"), there.get("grid")
+    if isinstance(runs, int) and study.runs < runs:
+        yield f"runs: {runs} there, {study.runs} now"
+    for key, values in grid.items() if isinstance(grid, Mapping) else ():
+        now = {shown(value) for value in study.grid.get(key, ())}
+        listed = values if isinstance(values, list) else []
+        if gone := [shown(value) for value in listed if shown(value) not in now]:
+            yield f"grid.{key}: {', '.join(gone)} there, not now"
+
+
+def _read(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(read_text(path, 16))
     except (ValueError, RecursionError) as error:

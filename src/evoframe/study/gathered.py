@@ -48,8 +48,10 @@ def _joined(study: Study, directory: Path, paths: Iterable[Path]) -> list[Row]:
             if run is None:
                 raise InputError(f"{path}: {_named(row)}: is no run of this study")
             _refuse_another(row, run, path)
-            if kept.setdefault(_key(row), row).champion != row.champion:
+            before = kept.get(_key(row), row)
+            if before.champion != row.champion:
                 raise InputError(f"{path}: {_named(row)}: another champion than in the rows imported before")
+            kept[_key(row)] = before if before.fitness_curve else row  # which may have curves
     return list(kept.values())
 
 

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -66,17 +67,24 @@ class Row:
     score_curve: tuple[float, ...] = ()
 
 
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"expected a number, found {text}")
+    return value
+
+
 _COLUMNS: Mapping[str, Callable[[str], Any]] = {
     "run": int,
     "seed": int,
     "configuration": str,
     "evoframe": str,
-    "fitness": float,
-    "score": float,
-    "fittest_pair_score": float,
+    "fitness": _finite,
+    "score": _finite,
+    "fittest_pair_score": _finite,
     "pairs": int,
     "simulations": int,
-    "seconds": float,
+    "seconds": _finite,
     "champion": str,
 }
 
@@ -148,13 +156,20 @@ def write_rows(rows: Sequence[Row], path: Path) -> None:
     figures = [[getattr(row, name) for name in _COLUMNS] for row in rows]
     table = [[*_settings(row, keys), *values] for row, values in zip(rows, figures, strict=True)]
     write_atomically(path, _csv([*keys, *_COLUMNS], table))
+    length = max((len(row.fitness_curve) for row in rows), default=0)
     curves = [
-        [*_settings(row, keys), row.run, name, *(f"{value:.6g}" for value in curve)]
+        [*_settings(row, keys), row.run, name, *map(_short, curve), *[""] * (length - len(curve))]
         for row in rows
         for name, curve in (("fitness", row.fitness_curve), ("score", row.score_curve))
+        if curve
     ]
-    generations = range(max((len(row.fitness_curve) for row in rows), default=0))
+    generations = range(length)
     write_atomically(path.with_name(CURVES_FILE), _csv([*keys, "run", "curve", *generations], curves))
+
+
+def _short(value: float) -> str:
+    """Return a value of a curve as it is written."""
+    return f"{value:.6g}"
 
 
 def _settings(row: Row, keys: Iterable[str]) -> list[str]:
@@ -189,19 +204,21 @@ def read_rows(path: Path) -> list[Row]:
     rows = []
     for number, line in enumerate(_table(path), start=2):
         settings = {key: value for key, value in line.items() if key not in _COLUMNS}
+        if lacking := [name for name in _COLUMNS if name not in line]:
+            raise InputError(f"{path}: is no table of a study: it has no column {', '.join(lacking)}")
         try:
             figures = {name: kind(line[name]) for name, kind in _COLUMNS.items()}
-        except (KeyError, TypeError, ValueError) as error:
+        except ValueError as error:
             raise InputError(f"{path}: line {number}: is no row of a study: {error}") from error
-        key = (tuple(settings.items()), figures["run"])
-        rows.append(
-            Row(
-                settings,
-                **figures,
-                fitness_curve=drawn.get((*key, "fitness"), ()),
-                score_curve=drawn.get((*key, "score"), ()),
-            )
-        )
+        row = Row(settings, **figures)
+        own = {name: drawn.get((tuple(settings.items()), row.run, name), ()) for name in ("fitness", "score")}
+        for name, curve in own.items():
+            if curve and _short(curve[-1]) != _short(getattr(row, name)):
+                raise InputError(
+                    f"{curves}: the {name} of line {number} of {path.name} does not end as that says: "
+                    f"{_short(curve[-1])} there, {_short(getattr(row, name))} here"
+                )
+        rows.append(attrs.evolve(row, fitness_curve=own["fitness"], score_curve=own["score"]))
     return rows
 
 
