@@ -55,6 +55,35 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     assert contents(tmp_path / "s" / "report") == written
 
 
+def test_rows_without_curves_are_compared_but_not_drawn_over_generations(
+    evoframe: Evoframe, study: list[str], tmp_path: Path
+) -> None:
+    made = tmp_path / "s"
+    for wanted, kept in (("part", "n=1"), ("all", "nothing")):
+        there = tmp_path / wanted
+        (there / "imported").mkdir(parents=True)
+        shutil.copy(made / "study.toml", there)
+        shutil.copy(made / "rows.csv", there / "imported")
+        for folder in made.glob(f"*{kept}*"):
+            shutil.copytree(folder, there / folder.name)
+    assert evoframe("report", *study[:2], "part", "all").returncode == 0
+    everything = contents(tmp_path / "part" / "report")
+    assert {f"{name}.pdf" for name in NAMES} - set(everything) == {
+        *("curves-score-n-2.pdf", "curves-fitness-n-2.pdf"),
+    }
+    drawn = [name for name in contents(tmp_path / "all" / "report") if name.startswith("curves")]
+    assert drawn == []
+
+
+def test_a_study_without_a_grid_has_one_group(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "grid.toml").write_text('extends = "toy.toml"\nruns = 2\n[grid]\n')
+    assert evoframe("study", "-p", toys.__file__, "grid.toml", "--out", "s").returncode == 0
+    made = evoframe("report", "-p", toys.__file__, "s")
+    assert made.returncode == 0, made.stderr
+    assert {"curves-score-s.pdf", "finals-fitness-s.pdf"} < set(contents(tmp_path / "s" / "report"))
+
+
 def test_of_a_study_that_is_not_finished_says_so(
     evoframe: Evoframe, study: list[str], tmp_path: Path
 ) -> None:

@@ -39,6 +39,9 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
         view: The groups.
         yardstick: What is drawn.
         unit: Of scores; metres are shown as millimetres.
+
+    Raises:
+        ValueError: No run has a curve.
     """
     return curves_of(lines_of_view(view, yardstick, unit), view, yardstick, unit)
 
@@ -57,7 +60,12 @@ def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = No
         label: Of the vertical axis.
         title: What stands above it.
         legend: What stands above the names of lines.
+
+    Raises:
+        ValueError: There are none.
     """
+    if not drawn:
+        raise ValueError("there are no lines to be drawn")
     figure, axes = _figure(height=3.0)
     for line in drawn:
         style: dict[str, Any] = {
