@@ -1,8 +1,8 @@
 "use strict";
 (() => {
   const COLOURS = {
-    light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b07800", "#3a8fc4", "#444444", "#8a6d00"],
-    dark: ["#66b7e8", "#ff9a52", "#3fd0a4", "#eba6cc", "#f2bd45", "#9fd6f5", "#dddddd", "#e8dc5a"],
+    light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b07800", "#3a8fc4", "#444444"],
+    dark: ["#66b7e8", "#ff9a52", "#3fd0a4", "#eba6cc", "#f2bd45", "#9fd6f5", "#dddddd"],
   };
   const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["toImage"] };
   const SECONDS = 4; // of a playback, whatever time was simulated
