@@ -152,10 +152,12 @@
       ranges().forEach((range, axis) => { scene[`${"xyz"[axis]}axis`] = { range, title: { text: `${"xyz"[axis]} (m)` }, nticks: 5 }; });
       return themed({ scene, margin: { l: 0, r: 0, t: 0, b: 0 }, legend: { orientation: "h", y: 0 }, uirevision: "kept" });
     };
+    // Its value is the number of a frame, which nobody wants to hear.
+    const say = (slider, beside, text) => { beside.textContent = text; slider.setAttribute("aria-valuetext", text); };
     const tell = () => {
       time.value = frame;
-      find(".told").textContent = `${along(given.times, frame).toFixed(4)} s`;
-      find(".times").textContent = `× ${scale}`;
+      say(time, find(".told"), `${along(given.times, frame).toFixed(4)} s`);
+      say(exaggeration, find(".times"), `× ${scale}`);
     };
     const now = () => {
       const at = along(given.times, frame);
@@ -182,7 +184,7 @@
       if (track) Plotly.relayout(chart, { shapes: now() });
       tell();
     };
-    const stop = () => { cancelAnimationFrame(playing); playing = 0; play.textContent = "play"; play.setAttribute("aria-pressed", "false"); };
+    const stop = () => { cancelAnimationFrame(playing); playing = 0; play.textContent = "play"; };
     const start = () => {
       let before; // the moment of the first picture, which may be before now
       const advance = (moment) => {
@@ -194,7 +196,6 @@
       };
       playing = requestAnimationFrame(advance);
       play.textContent = "pause";
-      play.setAttribute("aria-pressed", "true");
     };
 
     time.max = last;
