@@ -29,6 +29,7 @@ __all__ = ["Block", "Chart", "Motion", "Picture", "Section", "Source", "Table", 
 _QUANTA = 32767  # displacements are told as 16-bit numbers
 _NOTICEABLE = 0.15  # of the body's extent: how far the exaggeration moves it at first
 _MOST = 10.0  # times that
+_STILL = 1e-9  # of the extent: smaller displacements are rounding, and no motion
 
 
 @attrs.frozen
@@ -212,6 +213,8 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
     points = None if track is None else geometry.tracks[track]
     largest = max(float(np.abs(moved).max()) for moved in moves)
     extent = max(float(np.ptp(part.vertices[0], axis=0).max()) for part in geometry.parts)
+    if largest <= _STILL * extent:
+        moves, largest = [np.zeros_like(moved) for moved in moves], 0.0
     exaggeration = _round(_NOTICEABLE * extent / largest) if largest else 1
     step = largest / _QUANTA or 1.0
     return {
