@@ -48,20 +48,19 @@ def values(groups: Groups, yardstick: Yardstick) -> dict[str, list[float]]:
     return {name: [getattr(row, yardstick) for row in rows] for name, rows in groups.items()}
 
 
-def verdict(relation: str, p: float, wins: float) -> str:
+def verdict(relation: str, p: float, direction: int) -> str:
     """Say whether a published relation holds: ``>`` and ``=`` as the paper writes them."""
     if relation == "=":
         return "agrees" if p >= ALPHA else "**disagrees**"
     if p >= ALPHA:
         return "cannot tell"
-    return "agrees" if wins > 0.5 else "**disagrees**"
+    return "agrees" if direction > 0 else "**disagrees**"
 
 
 def tested(comparison: Comparison, first: str, relation: str, second: str) -> str:
     """Return what a test says of a published relation, with its p and how often the first wins."""
     pair = comparison.pair(first, second)
-    wins = pair.a12 if pair.first == first else 1.0 - pair.a12
-    return f"{verdict(relation, pair.p, wins)} (p {pair.p:.2g}, A12 {wins:.2f})"
+    return f"{verdict(relation, pair.p, pair.direction)} (p {pair.p:.2g}, A12 {pair.a12:.2f})"
 
 
 def lines(groups: Groups, published: Sequence[str], label: str) -> Iterator[str]:

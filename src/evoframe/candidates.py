@@ -11,7 +11,7 @@ from evoframe.blame import blaming
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_file, shown_name
-from evoframe.jobs import Job, read_job
+from evoframe.jobs import DEFAULT_PRESET, Job, read_job
 from evoframe.layers import Layer
 from evoframe.measurement import Candidate, can_draw, can_publish
 from evoframe.plugins import Plugins
@@ -21,9 +21,7 @@ from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.names import name_of
 from evoframe.study.plan import Planned, read_study, shown
 
-__all__ = ["Candidates", "read_candidates"]
-
-_DEFAULT = "paper"
+__all__ = ["Candidates", "Part", "champions", "read_candidates"]
 
 
 @attrs.frozen(eq=False)
@@ -40,8 +38,14 @@ class Candidates:
 
 
 @attrs.frozen(eq=False)
-class _Part:
-    """The bodies of one file or run, how they are simulated, and what a person named to get them."""
+class Part:
+    """The bodies of one file or run.
+
+    Attributes:
+        named: What a person named to get them.
+        config: How they are simulated.
+        bodies: At least one.
+    """
 
     named: str
     config: RunConfig
@@ -77,7 +81,7 @@ def read_candidates(
     alike = len({shown_name(path) for path in studies}) < len(studies)
     names = {path: _text(path) if alike else shown_name(path) for path in studies} if len(studies) > 1 else {}
     reader = _Reader(preset, overrides, plugins, names)
-    parts = [part for path in sources for part in reader.parts(path)]
+    parts = [part for path in sources for part in _some(reader, path)]
     if published:
         config = parts[0].config if parts else _config(preset, overrides, plugins)
         parts.append(_published(config))
@@ -96,6 +100,20 @@ def read_candidates(
     return Candidates(config, bodies)
 
 
+def champions(directory: Path, plugins: Plugins) -> Iterator[Part]:
+    """Return the champion of a run, or those of the finished runs of a study that are there.
+
+    Args:
+        directory: Of the run or study.
+        plugins: The plugins to choose from.
+
+    Raises:
+        InputError: One of them is damaged.
+        ConfigurationError: One of them cannot be simulated with these plugins.
+    """
+    return _Reader(None, (), plugins, {}).parts(directory)
+
+
 @attrs.frozen
 class _Reader:
     """Reads what a person names, one after the other; *studies* are the names of several studies."""
@@ -105,7 +123,7 @@ class _Reader:
     plugins: Plugins
     studies: Mapping[Path, str]
 
-    def parts(self, path: Path) -> Iterator[_Part]:
+    def parts(self, path: Path) -> Iterator[Part]:
         if _is_study(path):
             yield from self._of_study(path)
         else:
@@ -114,24 +132,30 @@ class _Reader:
     def _job(self, path: Path, own: Sequence[Layer] = ()) -> Job:
         return read_job(path, self.preset, [*own, *self.overrides], self.plugins, runs=True)
 
-    def _of_study(self, path: Path) -> Iterator[_Part]:
+    def _of_study(self, path: Path) -> Iterator[Part]:
         study = read_study(path / STUDY_FILE, (), self.plugins)
         statuses = survey(study, path)
         finished = [planned for planned, status in statuses.items() if status.state == "finished"]
-        if not finished:
-            raise InputError(f"{path}: no run of this study is finished here, so it has no champions")
         for planned in sorted(finished, key=lambda planned: study.cells.index(planned.cell)):
             directory, own = planned.directory, [] if self.preset else [_executor(planned)]
             job = self._job(directory, own)
             label = _text(directory)
             body = Candidate(label, self._group(planned, path), job.designs[0], label)
-            yield _Part(_text(path), job.config, (body,))
+            yield Part(_text(path), job.config, (body,))
 
     def _group(self, planned: Planned, path: Path) -> str:
         name = name_of({key: shown(value) for key, value in planned.cell.settings})
         if not name:
             return _text(path)
         return f"{self.studies[path]}: {name}" if path in self.studies else name
+
+
+def _some(reader: _Reader, path: Path) -> list[Part]:
+    """Return the parts of a source, which has one at least."""
+    found = list(reader.parts(path))
+    if not found:
+        raise InputError(f"{path}: no run of this study is finished here, so it has no champions")
+    return found
 
 
 def _is_study(path: Path) -> bool:
@@ -143,14 +167,14 @@ def _executor(planned: Planned) -> Layer:
     return Layer("the study", {"executor": planned.cell.config.tables()["executor"]})
 
 
-def _of_job(job: Job) -> _Part:
+def _of_job(job: Job) -> Part:
     """Return the bodies of a run or file, each on its own; one that is alone in a file has its path."""
     named = _text(job.path)
     labels = [named if label in (job.path.name, str(job.path)) else label for label in job.labels]
     bodies = [
         Candidate(label, label, design, named) for label, design in zip(labels, job.designs, strict=True)
     ]
-    return _Part(named, job.config, tuple(bodies))
+    return Part(named, job.config, tuple(bodies))
 
 
 def _text(path: Path) -> str:
@@ -159,20 +183,20 @@ def _text(path: Path) -> str:
 
 
 def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
-    return load_config(preset or _DEFAULT, overrides=overrides, plugins=plugins)
+    return load_config(preset or DEFAULT_PRESET, overrides=overrides, plugins=plugins)
 
 
-def _published(config: RunConfig) -> _Part:
+def _published(config: RunConfig) -> Part:
     simulator = config.simulator.component
     if not can_publish(simulator):
         raise ConfigurationError(f"the simulator '{config.simulator.name}' brings no published bodies")
     named = f"published with {config.simulator.name}"
     with blaming("simulator"):
         bodies = [Candidate(label, label, design, named) for label, design in simulator.published()]
-    return _Part(named, config, tuple(bodies))
+    return Part(named, config, tuple(bodies))
 
 
-def _refuse_other_simulations(parts: Sequence[_Part]) -> None:
+def _refuse_other_simulations(parts: Sequence[Part]) -> None:
     first, *others = parts
     for part in others:
         lines = differences(first.config.simulation(), part.config.simulation(), ("there", "here"))
@@ -185,7 +209,7 @@ def _refuse_other_simulations(parts: Sequence[_Part]) -> None:
             )
 
 
-def _refuse_same_names(parts: Sequence[_Part]) -> None:
+def _refuse_same_names(parts: Sequence[Part]) -> None:
     owners: dict[str, str] = {}
     labels: set[str] = set()
     for part in parts:

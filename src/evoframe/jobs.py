@@ -18,9 +18,10 @@ from evoframe.plugins import Plugins
 from evoframe.resolve import load_config, named_simulator
 from evoframe.values import Design
 
-__all__ = ["Job", "naming", "read_job"]
+__all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
 
-_DEFAULT = "paper"
+DEFAULT_PRESET = "paper"
+"""With which designs are simulated that do not say how."""
 
 
 @attrs.frozen
@@ -93,7 +94,7 @@ def _of_run(path: Path, preset: str | None, overrides: Sequence[str | Layer], pl
 
 def _of_champion(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
     design, simulation, recorded = read_champion(path)
-    source, own = preset or _DEFAULT, [] if preset else [Layer(str(path), simulation)]
+    source, own = preset or DEFAULT_PRESET, [] if preset else [Layer(str(path), simulation)]
     config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
     _check_roles(path, design, config)
     score = recorded if preset is None and _changes_nothing(source, own, overrides) else None
@@ -101,7 +102,7 @@ def _of_champion(path: Path, preset: str | None, overrides: Sequence[str | Layer
 
 
 def _of_file(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    source = preset or _DEFAULT
+    source = preset or DEFAULT_PRESET
     own = _settings_of(path, source, overrides, plugins)
     config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
     read = getattr(config.simulator.component, "read", None)

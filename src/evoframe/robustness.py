@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from evoframe.candidates import Candidates, read_candidates
+import attrs
+
+from evoframe.candidates import Candidates, champions, read_candidates
 from evoframe.discovery import discover
 from evoframe.errors import ConfigurationError
 from evoframe.layers import layers_of
 from evoframe.loading import Run
-from evoframe.measurement import Bench, Body, ControllingSimulator, Robustness, Setting, digest_of
+from evoframe.measurement import Bench, Body, ControllingSimulator, Robustness, Setting, can_draw, digest_of
 from evoframe.plugins import Plugins
+from evoframe.protocols import unit_of
 
-__all__ = ["measure", "robustness", "setting_of"]
+__all__ = ["Measurable", "measurable", "measure", "robustness", "setting_of"]
 
 
 def robustness(  # noqa: PLR0913 - the options of the command
@@ -53,6 +57,36 @@ def robustness(  # noqa: PLR0913 - the options of the command
     return measure(candidates, setting_of(candidates, seed, controllers))
 
 
+@attrs.frozen
+class Measurable:
+    """A champion that could be measured.
+
+    Attributes:
+        digest: As of a :class:`~evoframe.measurement.Body`.
+        simulation: How it is simulated in its run: the tables ``simulator`` and ``objective``, as in JSON.
+    """
+
+    digest: str
+    simulation: Mapping[str, Any]
+
+
+def measurable(directory: Path, plugins: Plugins) -> Iterator[Measurable]:
+    """Return the champions of a run, or of the finished runs of a study that are there.
+
+    They need not be simulated alike; those whose simulator draws no controllers are left out.
+
+    Raises:
+        ConfigurationError: One of them cannot be read with these plugins.
+        InputError: One of them is damaged.
+    """
+    for part in champions(directory, plugins):
+        simulator = part.config.simulator.component
+        if can_draw(simulator):
+            simulation = json.loads(json.dumps(part.config.simulation()))  # tuples are read back as lists
+            for body in part.bodies:
+                yield Measurable(digest_of(simulator, body.design), simulation)
+
+
 def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
     """Return all that decides a measurement, before it is made.
 
@@ -64,7 +98,7 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
         Body(body.label, body.group, digest_of(_simulator(candidates), body.design), body.source)
         for body in candidates.bodies
     ]
-    unit = str(getattr(config.objective.component, "unit", ""))
+    unit = unit_of(config.objective.component)
     try:
         return Setting(seed, controllers, unit, config.simulation(), tuple(bodies))
     except (TypeError, ValueError) as error:

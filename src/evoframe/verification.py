@@ -11,7 +11,7 @@ from typing import Any, Protocol, TypeGuard
 import attrs
 
 from evoframe.evaluation import Score, simulated
-from evoframe.protocols import ExecutorRun, Objective, Simulator
+from evoframe.protocols import ExecutorRun, Objective, Simulator, unit_of
 from evoframe.values import Design, Record, Variant
 
 __all__ = [
@@ -150,7 +150,7 @@ def verify_design(
     for variant, given in zip(variants, others, strict=True):
         drawn.setdefault(variant.name, []).append(given)
     findings = tuple(Finding(name, tuple(scores)) for name, scores in drawn.items())
-    return Verification(first, findings, str(getattr(objective, "unit", "")), score)
+    return Verification(first, findings, unit_of(objective), score)
 
 
 def verification_from_json(document: Any) -> Verification:

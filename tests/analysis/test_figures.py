@@ -17,8 +17,9 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
+from evoframe.analysis.corrections import CORRECTIONS, Correction
 from evoframe.analysis.figures import curves, finals, ranks
-from evoframe.analysis.statistics import CORRECTIONS, Correction, compare
+from evoframe.analysis.statistics import compare
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.analysis.units import NAMES
 from evoframe.study.rows import Row, read_rows

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from evoframe.analysis.statistics import CORRECTIONS, a12, compare, detectable_a12
+from evoframe.analysis.corrections import CORRECTIONS
+from evoframe.analysis.statistics import a12, compare, detectable_a12
 
 # R's dataset airquality: mean ozone in parts per billion, New York, May to September 1973, without missing
 # values. Source: Chambers et al. 1983, Graphical Methods for Data Analysis.
@@ -74,9 +75,23 @@ class TestAgainstR:
 
 def test_the_ranking_is_that_of_the_months() -> None:
     comparison = compare(OZONE)
-    assert comparison.ranking == "August = July > September = June = May"
+    assert comparison.ranking == "July = August = June = September = May"  # of neighbours only
     assert comparison.letters["August"] == comparison.letters["July"]
     assert not set(comparison.letters["May"]) & set(comparison.letters["July"])
+
+
+def test_outliers_do_not_turn_a_ranking_against_its_test() -> None:
+    usual, better = np.linspace(5.0, 5.2, 28).tolist(), np.linspace(5.3, 5.5, 30).tolist()
+    comparison = compare({"A": [*usual, 60.0, 60.0], "B": better})
+    assert comparison.ranking == "B > A"
+    assert comparison.pair("B", "A").a12 > 0.9
+    assert comparison.pair("A", "B").direction == -1
+
+
+def test_there_are_no_letters_where_the_alphabet_does_not_suffice() -> None:
+    comparison = compare({str(n): [100.0 * n + i for i in range(300)] for n in range(60)})
+    assert set(comparison.letters.values()) == {""}
+    assert comparison.pair("59", "0").p < 1e-6
 
 
 values = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=12)
@@ -112,6 +127,30 @@ class TestLaws:
         assert comparison.ranking == "high > low"
         assert comparison.pair("high", "low").a12 == 1.0
         assert comparison.pair("low", "high").a12 == 0.0
+
+    @given(groups, st.sampled_from(CORRECTIONS))
+    def test_who_ranks_higher_comes_first(
+        self, given_groups: dict[str, list[float]], correction: str
+    ) -> None:
+        comparison = compare(given_groups, correction)  # type: ignore[arg-type]
+        ranks = {group.name: group.mean_rank for group in comparison.groups}
+        assert list(ranks.values()) == sorted(ranks.values(), reverse=True)
+        for pair in comparison.pairs:
+            assert pair.direction == np.sign(ranks[pair.first] - ranks[pair.second])
+        assert "<" not in comparison.ranking
+
+    @given(st.lists(st.floats(0, 100), min_size=2, max_size=6), st.sampled_from(CORRECTIONS))
+    def test_groups_share_a_letter_if_and_only_if_they_are_not_different(
+        self, places: list[float], correction: str
+    ) -> None:
+        spread = np.linspace(0, 40, 15)
+        given_groups = {
+            name: (place + spread).tolist() for name, place in zip("ABCDEF", places, strict=False)
+        }
+        comparison = compare(given_groups, correction)  # type: ignore[arg-type]
+        for pair in comparison.pairs:
+            shared = set(comparison.letters[pair.first]) & set(comparison.letters[pair.second])
+            assert bool(shared) == (pair.p >= comparison.alpha)
 
     @given(values, values)
     def test_a12_counts_pairs(self, first: list[float], second: list[float]) -> None:

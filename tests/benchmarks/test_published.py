@@ -19,19 +19,19 @@ def rows() -> list[Row]:
 
 
 @pytest.mark.parametrize(
-    ("relation", "p", "wins", "said"),
+    ("relation", "p", "direction", "said"),
     [
-        (">", 0.01, 0.8, "agrees"),
-        (">", 0.01, 0.2, "**disagrees**"),
-        (">", 0.2, 0.8, "cannot tell"),
-        ("=", 0.2, 0.8, "agrees"),
-        ("=", 0.01, 0.5, "**disagrees**"),
+        (">", 0.01, 1, "agrees"),
+        (">", 0.01, -1, "**disagrees**"),
+        (">", 0.2, 1, "cannot tell"),
+        ("=", 0.2, 1, "agrees"),
+        ("=", 0.01, -1, "**disagrees**"),
     ],
 )
 def test_a_relation_holds_or_does_not_or_cannot_be_told(
-    relation: str, p: float, wins: float, said: str
+    relation: str, p: float, direction: int, said: str
 ) -> None:
-    assert verdict(relation, p, wins) == said
+    assert verdict(relation, p, direction) == said
 
 
 def test_every_published_relation_has_a_line(rows: list[Row]) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import polars as pl
+
 from evoframe import Plugins, load_study
 from evoframe.study.conduct import claim
 from evoframe.study.plan import Planned, Study
@@ -31,7 +33,22 @@ def test_a_study_is_read_as_it_stands(
     frame = data.frame
     assert list(frame["score"]) == [row.score for row in data.rows]
     assert list(frame.columns[:4]) == ["collaboration.n", "simulator", "run", "seed"]
+    assert list(frame.loc[frame["collaboration.n"] == 1, "run"]) == [0, 0]
     curves = data.curves
     assert len(curves) == 3 * 5
     last = curves[curves["generation"] == 4]
     assert list(last["fitness"]) == [row.fitness for row in data.rows]
+
+
+def test_polars_takes_the_tables(
+    made: tuple[Study, Path, list[Planned]], toy_plugins: Plugins, tmp_path: Path
+) -> None:
+    study, directory, _ = made
+    claim(study, tmp_path / "there")
+    shutil.copytree(directory, tmp_path / "there", dirs_exist_ok=True)
+    data = load_study(tmp_path / "there", plugins=toy_plugins)
+    for table in (data.frame, data.curves):
+        taken = pl.from_dataframe(table)
+        assert taken.columns == list(table.columns)
+        assert taken["score"].to_list() == list(table["score"])
+        assert taken["collaboration.n"].dtype == pl.Int64

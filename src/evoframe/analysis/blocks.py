@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import find_pair, in_notation
-from evoframe.analysis.statistics import Correction
 
 __all__ = ["BlockComparison", "BlockPair", "compare_blocks"]
 
@@ -33,16 +33,19 @@ class BlockPair:
         second: The name of the other.
         p: Wilcoxon's p of the differences, corrected.
         wins: The share of blocks in which the first is the greater, ties half.
+        direction: 1 if the ranks of the differences, which Wilcoxon tests, are for the first, -1 if for the
+            second, 0 if they are even.
     """
 
     first: str
     second: str
     p: float
     wins: float
+    direction: int
 
     def turned(self) -> BlockPair:
         """Return the same of the second and the first."""
-        return BlockPair(self.second, self.first, self.p, 1 - self.wins)
+        return BlockPair(self.second, self.first, self.p, 1 - self.wins, -self.direction)
 
 
 @attrs.frozen
@@ -96,7 +99,8 @@ def compare_blocks(values: Mapping[str, Sequence[float]], correction: Correction
     Raises:
         ValueError: There are too few groups or values, not as many for each, or a value is not finite.
 
-    Sources: Friedman 1937; Wilcoxon 1945, with zeros split (Pratt's ranks); Kendall and Smith 1939.
+    Sources: Friedman 1937; Wilcoxon 1945, where zeros are ranked and then dropped (Pratt 1959), exact for at
+    most 50 blocks without ties; Kendall and Smith 1939.
     """
     table = _table(values)
     ranks = stats.rankdata(table, axis=1).mean(axis=0)
@@ -116,7 +120,7 @@ def compare_blocks(values: Mapping[str, Sequence[float]], correction: Correction
         p=p,
         kendall_w=None if chi_squared is None else chi_squared / (len(table) * (len(names) - 1)),
         pairs=tuple(
-            BlockPair(names[i], names[j], p_of_pair, _wins(ordered[:, i], ordered[:, j]))
+            _pair(names[i], names[j], p_of_pair, ordered[:, i] - ordered[:, j])
             for (i, j), p_of_pair in zip(pairs, corrected, strict=True)
         ),
     )
@@ -142,8 +146,10 @@ def _friedman(table: Floats) -> tuple[float, float]:
 def _wilcoxon(first: Floats, second: Floats) -> float:
     if (first == second).all():
         return 1.0
-    return float(stats.wilcoxon(first, second, zero_method="pratt", method="approx").pvalue)
+    return float(stats.wilcoxon(first, second, zero_method="pratt", method="auto").pvalue)
 
 
-def _wins(first: Floats, second: Floats) -> float:
-    return float(np.mean((first > second) + 0.5 * (first == second)))
+def _pair(first: str, second: str, p: float, differences: Floats) -> BlockPair:
+    signs = np.sign(differences)
+    ranked = float(np.sum(signs * stats.rankdata(np.abs(differences))))
+    return BlockPair(first, second, p, wins=float(np.mean(0.5 + 0.5 * signs)), direction=int(np.sign(ranked)))

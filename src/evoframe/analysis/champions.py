@@ -15,6 +15,7 @@ from evoframe.errors import InputError
 from evoframe.jobs import naming, read_job
 from evoframe.loading import Run
 from evoframe.plugins import Plugins
+from evoframe.protocols import unit_of
 from evoframe.verification import Verification
 
 __all__ = ["ChampionData", "DrawnNetwork", "load_champion"]
@@ -78,7 +79,7 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
     drawn = geometry.tracks if geometry else {}
     return ChampionData(
         score=run.champion.score,
-        unit=str(getattr(objective, "unit", "")),
+        unit=unit_of(objective),
         geometry=geometry,
         track=next((track for track in objective.record.tracks if track in drawn), None),
         networks=tuple(_networks(run, config)),

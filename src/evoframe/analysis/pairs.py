@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol, Self, TypeVar
 
-__all__ = ["Pair", "find_pair", "in_notation"]
+__all__ = ["Pair", "find_pair", "in_notation", "oriented"]
 
 
 class Pair(Protocol):
@@ -23,6 +23,10 @@ class Pair(Protocol):
     @property
     def p(self) -> float:
         """Of their test."""
+
+    @property
+    def direction(self) -> int:
+        """1 if the first is the greater by what is tested, -1 if the second is, 0 if neither."""
 
     def turned(self) -> Self:
         """Return the same of the second and the first."""
@@ -48,6 +52,9 @@ def find_pair(pairs: Iterable[P], first: str, second: str) -> P:
 def in_notation(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: float) -> str:
     """Return a ranking as the paper writes it: between neighbours stands what their test says.
 
+    That is ``=`` if they are not found to differ, and ``>`` if they are. Where the order is by one measure
+    and the test by another, a ``<`` says that they contradict each other.
+
     Args:
         names: From the greatest down.
         pair: Gives the test of two of them.
@@ -55,5 +62,12 @@ def in_notation(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: f
     """
     parts = [names[0]]
     for one, other in itertools.pairwise(names):
-        parts += [">" if pair(one, other).p < alpha else "=", other]
+        found = pair(one, other)
+        sign = "=" if found.p >= alpha else ">" if found.direction > 0 else "<"
+        parts += [sign, other]
     return " ".join(parts)
+
+
+def oriented(pair: P) -> P:
+    """Return a pair with the greater one first, by what is tested."""
+    return pair.turned() if pair.direction < 0 else pair

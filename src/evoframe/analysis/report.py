@@ -6,14 +6,14 @@ from pathlib import Path
 
 import attrs
 
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.listing import listed, settle
-from evoframe.analysis.robustness import SETTING_FILE
 from evoframe.analysis.run_report import write_run_report
-from evoframe.analysis.statistics import Correction
 from evoframe.analysis.study_report import write_study_report
 from evoframe.analysis.writing import Written
 from evoframe.errors import InputError
 from evoframe.files import is_file
+from evoframe.measurement_files import SETTING_FILE
 from evoframe.plugins import Plugins
 from evoframe.store import CONFIG_FILE
 from evoframe.study.conduct import STUDY_FILE

@@ -9,11 +9,11 @@ import pandas as pd
 from evoframe.analysis.champion_report import DrawnChampion, champion_sections, drawn, write_champion
 from evoframe.analysis.champions import ChampionData, load_champion
 from evoframe.analysis.charts import lines_chart
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.figures import lines
 from evoframe.analysis.lines import lines_of_run
 from evoframe.analysis.page import Chart, Section, Source, Table, page
-from evoframe.analysis.robustness import robustness_report
-from evoframe.analysis.statistics import Correction
+from evoframe.analysis.robustness import robustness_part
 from evoframe.analysis.tables import versions_table
 from evoframe.analysis.units import axis_title, with_unit
 from evoframe.analysis.writing import Written, prepare_directory, write_bytes, write_figure, write_table
@@ -47,18 +47,18 @@ def write_run_report(
     run, champion = load_run(directory), load_champion(directory, plugins)
     curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
     title, lead, with_figures = shown_name(directory), _lead(run, champion), drawn(champion)
+    robustness = robustness_part(directory, plugins, correction)
     prepare_directory(target)
     written = write_figure(lines(curves, label, title), target / "curves")
     written += write_champion(with_figures, target)
     summary = _summary(run, champion)
     written += write_table(summary, target / "summary")
-    more, robustness = robustness_report(directory, target, plugins, correction)
-    written += more
+    written += robustness.write(target)
     progress = Section(
         "Progress", [Chart(_CAPTION, lines_chart(curves, label)), Table("The final figures.", summary)]
     )
     champion_first, *others = _sections(run, with_figures, progress)
-    data = page(title, lead, [champion_first, *robustness, *others])
+    data = page(title, lead, [champion_first, *robustness.sections, *others])
     written.append(write_bytes(data, target / "report.html"))
     return Written(f"{title}: {lead}\n", tuple(written))
 

@@ -15,10 +15,11 @@ from evoframe.discovery import discover
 from evoframe.errors import InputError
 from evoframe.files import is_file, read_text, shown_name
 from evoframe.plugins import Plugins
+from evoframe.protocols import unit_of
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
 from evoframe.study.names import called, last_of, title_of
-from evoframe.study.plan import Study, read_study
+from evoframe.study.plan import Study, read_study, shown
 from evoframe.study.rows import Row
 
 __all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
@@ -41,6 +42,7 @@ class StudyData:
         rows: Of the finished ones, in the order of work.
         best_run: The directory of the run with the best pair, of those whose directories are there.
         settings: The study as it stands in its file.
+        values: Key of the grid -> what stands for a value in rows -> the value, if it is a number or a text.
     """
 
     label: str
@@ -50,24 +52,34 @@ class StudyData:
     rows: tuple[Row, ...] = attrs.field(repr=False)
     best_run: Path | None = None
     settings: str = attrs.field(default="", repr=False)
+    values: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict, repr=False)
 
     @property
     def frame(self) -> pd.DataFrame:
         """One line for each run: the keys of the grid, and all figures."""
-        return pd.DataFrame([_figures(row) for row in self.rows])
+        return pd.DataFrame([{**self._settings(row), **_figures(row)} for row in self.rows])
 
     @property
     def curves(self) -> pd.DataFrame:
         """One line for each run and generation: the keys of the grid, and both yardsticks."""
         return pd.DataFrame(
             [
-                {**row.settings, "run": row.run, "generation": generation, "score": score, "fitness": fitness}
+                {
+                    **self._settings(row),
+                    "run": row.run,
+                    "generation": generation,
+                    "score": score,
+                    "fitness": fitness,
+                }
                 for row in self.rows
                 for generation, (score, fitness) in enumerate(
                     zip(row.score_curve, row.fitness_curve, strict=True)
                 )
             ]
         )
+
+    def _settings(self, row: Row) -> dict[str, Any]:
+        return {key: self.values.get(key, {}).get(text, text) for key, text in row.settings.items()}
 
     def views(self, yardstick: Yardstick) -> list[View]:
         """Return what is compared: the values of the last key, in a view for each combination of the others.
@@ -145,14 +157,19 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         rows=tuple(rows.values()),
         best_run=max(here, key=here.__getitem__, default=None),
         settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
+        values={
+            key: {shown(value): value for value in values if isinstance(value, str | int | float)}
+            for key, values in study.grid.items()
+        },
     )
 
 
 def _unit(study: Study) -> str:
-    units: Sequence[str] = [str(getattr(c.config.objective.component, "unit", "")) for c in study.cells]
+    units: Sequence[str] = [unit_of(cell.config.objective.component) for cell in study.cells]
     return units[0] if len(set(units)) == 1 else ""
 
 
 def _figures(row: Row) -> dict[str, Any]:
     figures = attrs.asdict(row, filter=lambda field, _: not field.name.endswith("_curve"))
-    return {**figures.pop("settings"), **figures}
+    del figures["settings"]
+    return figures

@@ -11,12 +11,13 @@ import pandas as pd
 from evoframe.analysis.champion_report import champion_sections, drawn, write_champion
 from evoframe.analysis.champions import load_champion
 from evoframe.analysis.charts import finals_chart, lines_chart
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.figures import curves_of, finals, ranks
 from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
-from evoframe.analysis.robustness import robustness_report
+from evoframe.analysis.robustness import robustness_part
 from evoframe.analysis.slugs import slugs
-from evoframe.analysis.statistics import Comparison, Correction
+from evoframe.analysis.statistics import Comparison
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick, load_study
 from evoframe.analysis.tables import (
     Compared,
@@ -57,6 +58,7 @@ def write_study_report(
     data = load_study(directory, plugins=plugins)
     if not data.rows:
         raise InputError(f"{data.label}: no run of this study is finished, so there is nothing to report")
+    robustness = robustness_part(directory, plugins, correction)
     prepare_directory(target)
     found = comparisons(data, correction)
     all_shown = [*_shown(data, found)]
@@ -67,15 +69,14 @@ def write_study_report(
     champion = drawn(load_champion(data.best_run, plugins)) if data.best_run else None
     if champion is not None:
         written += write_champion(champion, target)
-    more, robustness = robustness_report(directory, target, plugins, correction)
     words = _words(data, found)
-    written += [*more, write_bytes(words.encode(), target / "conclusions.txt")]
+    written += [*robustness.write(target), write_bytes(words.encode(), target / "conclusions.txt")]
     rankings, *compared = _compared_sections(data.unit, all_shown, tables["ranking"])
     sections = [
         rankings,
         *(champion_sections(champion, _whose(data)) if champion else []),
         *compared,
-        *robustness,
+        *robustness.sections,
         Section("Tables", _large(tables)),
         Section("Configuration", list(_sources(data))),
     ]

@@ -7,7 +7,8 @@ from typing import Any, TypeAlias
 
 import pandas as pd
 
-from evoframe.analysis.statistics import Comparison, Correction, compare
+from evoframe.analysis.corrections import Correction
+from evoframe.analysis.statistics import Comparison, compare
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.provenance import leaves
 from evoframe.verification import Verification

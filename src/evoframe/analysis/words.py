@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+from evoframe.analysis.corrections import Correction
+from evoframe.analysis.pairs import oriented
 from evoframe.analysis.statistics import Comparison, Pairwise, detectable_a12
 
-__all__ = ["conclusion", "in_words", "listed"]
+__all__ = ["conclusion", "corrected", "in_words", "listed"]
 
 _FEW = 10  # values; below that a rank test of several groups finds next to nothing
+_TOO_FEW = 5  # values; below that the distributions that the tests suppose are far from the true ones
 _MOST = 15  # pairs that a reader follows
 
 _CORRECTIONS = {
@@ -41,38 +44,56 @@ def _overall(comparison: Comparison, measure: str) -> str:
 
 
 def _pairs(comparison: Comparison, values: str) -> list[str]:
-    if comparison.p >= comparison.alpha:
-        return ["So no pair of them should be called different, whatever a test of that pair alone says."]
     different = [pair for pair in comparison.pairs if pair.p < comparison.alpha]
-    how = f"Dunn's test, {_CORRECTIONS[comparison.correction]}"
+    how = f"Dunn's test, {corrected(comparison.correction)}"
     if not different:
-        return [f"Yet no pair of them can be told apart ({how})."]
+        return [f"No pair of them can be told apart by {how}."]
     if len(different) > _MOST:
-        return [f"{len(different)} of {len(comparison.pairs)} pairs differ ({how}); the tables name them."]
-    sentences = [f"{_greater(pair, values)} (p {in_words(pair.p)})" for pair in different]
+        return [
+            f"{len(different)} of {len(comparison.pairs)} pairs differ by {how}; the tables name them.",
+            *_doubts(comparison),
+        ]
+    sentences = [_greater(oriented(pair), values) for pair in different]
     rest = len(comparison.pairs) - len(different)
     others = f" The other {rest} pairs are not found to differ." if rest > 1 else ""
     if rest == 1:
         others = " The other pair is not found to differ."
-    return [f"{listed(sentences)} ({how}).{others}"]
+    return [f"{listed(sentences)}, by {how}.{others}", *_doubts(comparison)]
+
+
+def _doubts(comparison: Comparison) -> Iterator[str]:
+    """Say what speaks against pairs that were found to differ."""
+    if comparison.correction == "none" and len(comparison.pairs) > 1:
+        yield f"Without a correction, {comparison.alpha:.0%} of all pairs that are alike are found to differ."
+    if comparison.p >= comparison.alpha:
+        yield "As all groups together are not found to differ, this is weak evidence."
+
+
+def corrected(correction: Correction) -> str:
+    """Return in words how p-values of pairs are corrected."""
+    return _CORRECTIONS[correction]
 
 
 def _greater(pair: Pairwise, values: str) -> str:
-    first, second, share = pair.first, pair.second, pair.a12
-    if share < 0.5:
-        first, second, share = second, first, 1 - share
-    return f"{first} beats {second} in {share:.0%} of all comparisons of two {values}"
+    often = f"the greater in {pair.a12:.0%} of all comparisons of two {values}"
+    return f"{pair.first} is above {pair.second} ({often}, p {in_words(pair.p)})"
 
 
 def _limits(comparison: Comparison, values: tuple[str, str]) -> str:
     fewest = min(group.n for group in comparison.groups)
-    found = detectable_a12(fewest, len(comparison.pairs), comparison.alpha)
+    tests = 1 if comparison.correction == "none" else len(comparison.pairs)
+    found = detectable_a12(fewest, tests, comparison.alpha)
     count = f"{fewest} {values[0] if fewest == 1 else values[1]}"
+    if fewest < _TOO_FEW:
+        return (
+            f"With {count} in the smallest group these tests, whose p-values suppose more of them, show "
+            "nothing, and exclude nothing."
+        )
     if fewest < _FEW:
         return f"With {count} in the smallest group, a difference would have to be enormous to be found."
     return (
-        f"With {count} in the smallest group, a difference is found in four of five cases if one beats the "
-        f"other in {found:.0%} of all comparisons of two {values[1]}; smaller ones cannot be excluded."
+        f"With {count} in the smallest group, a difference is found in four of five cases if one is the "
+        f"greater in {found:.0%} of all comparisons of two {values[1]}; smaller ones cannot be excluded."
     )
 
 

@@ -32,6 +32,8 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "png": {"metadata": {"Software": None}, "dpi": 300},
 }
 
+_SIGNS = str.maketrans({"<": r"\textless{}", ">": r"\textgreater{}"})  # others in LaTeX's usual fonts
+
 
 @attrs.frozen
 class Written:
@@ -116,7 +118,7 @@ def rendered(figure: Figure, name: str) -> Rendered:
 
 
 def write_table(table: pd.DataFrame, path: Path) -> list[Path]:
-    """Write a table as CSV, and as LaTeX with four digits.
+    """Write a table as CSV, and as LaTeX (package booktabs) with four digits.
 
     Args:
         table: What is written.
@@ -130,7 +132,7 @@ def write_table(table: pd.DataFrame, path: Path) -> list[Path]:
     """
     texts = {
         "csv": table.to_csv(index=False),
-        "tex": table.to_latex(index=False, float_format="%.4g", escape=True),
+        "tex": table.to_latex(index=False, na_rep="-", float_format="%.4g", escape=True).translate(_SIGNS),
     }
     return [
         write_bytes(text.encode(), path.with_name(f"{path.name}.{ending}")) for ending, text in texts.items()

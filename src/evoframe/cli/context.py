@@ -13,7 +13,7 @@ import click
 from click.shell_completion import CompletionItem
 from rich.console import Console
 
-from evoframe.config import RunConfig
+from evoframe.analysis.corrections import CORRECTIONS
 from evoframe.discovery import discover
 from evoframe.errors import InputError
 from evoframe.layers import Layer, layer_of, preset_names
@@ -24,6 +24,7 @@ __all__ = [
     "configuration_argument",
     "correction_option",
     "is_quiet",
+    "messages",
     "modules_of",
     "needing_extra",
     "output",
@@ -31,7 +32,6 @@ __all__ = [
     "preset_option",
     "scored",
     "set_option",
-    "unit_of",
     "workers_option",
 ]
 
@@ -116,9 +116,11 @@ def output() -> Console:
     return console if console.is_terminal else Console(markup=False, emoji=False, highlight=False, width=4096)
 
 
-def unit_of(config: RunConfig) -> str:
-    """Return the unit of the scores of a configuration's objective; empty if it does not say."""
-    return str(getattr(config.objective.component, "unit", ""))
+def messages() -> Console:
+    """Return where progress goes: the terminal, if the standard error is one."""
+    return Console(
+        stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
+    )
 
 
 def scored(score: float | None, unit: str) -> str:
@@ -182,7 +184,7 @@ def correction_option(function: F) -> F:
     """Add ``--correction C`` to a command that compares pairs of groups."""
     return click.option(
         "--correction",
-        type=click.Choice(["holm", "bonferroni", "fdr_bh", "none"]),
+        type=click.Choice(CORRECTIONS),
         default="holm",
         show_default=True,
         help="Of the p-values for the number of pairs; the paper uses none.",

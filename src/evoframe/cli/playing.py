@@ -8,13 +8,14 @@ from pathlib import Path
 import click
 from rich.table import Table
 
-from evoframe.cli.context import is_quiet, output, scored, unit_of
+from evoframe.cli.context import is_quiet, output, scored
 from evoframe.cli.progress import Progress
 from evoframe.cli.signals import exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
 from evoframe.config import RunConfig
 from evoframe.loading import Run, load_run
 from evoframe.observers import Observers
+from evoframe.protocols import unit_of
 from evoframe.run import Execution, verify_champion
 from evoframe.verification import can_verify
 
@@ -43,7 +44,7 @@ def show_end(ctx: click.Context, config: RunConfig, directory: Path) -> None:
     if quiet:
         click.echo(directory)
     else:
-        output().print(_summary(load_run(directory), unit_of(config)))
+        output().print(_summary(load_run(directory), unit_of(config.objective.component)))
     try:
         _verify(config, directory, quiet)
     except KeyboardInterrupt:

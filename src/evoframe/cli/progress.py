@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,6 +10,7 @@ from rich import progress
 from rich.console import Console, RenderableType
 from rich.text import Text
 
+from evoframe.cli.context import messages
 from evoframe.config import RunConfig
 from evoframe.hookspecs import hookimpl
 from evoframe.values import Turn
@@ -25,9 +25,7 @@ class Progress:
     """An observer that reports on standard error."""
 
     def __init__(self) -> None:
-        self._console = Console(
-            stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
-        )
+        self._console = messages()
         self._bar: _Bar | None = None
         self._task = progress.TaskID(0)
         self._best: dict[str, float] = {}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from evoframe.analysis.corrections import Correction
 from evoframe.cli.context import common_options, correction_option, is_quiet, needing_extra, plugins_of
 from evoframe.errors import InputError
 
@@ -30,7 +31,9 @@ Examples:
 @correction_option
 @common_options
 @click.pass_context
-def report(ctx: click.Context, directories: tuple[Path, ...], out: Path | None, correction: str) -> None:
+def report(
+    ctx: click.Context, directories: tuple[Path, ...], out: Path | None, correction: Correction
+) -> None:
     """Write figures, tables, conclusions and a page of runs and studies, finished or not.
 
     DIR is the directory of a run or of a study. The last key of a study's grid is what is compared; each
@@ -43,7 +46,7 @@ def report(ctx: click.Context, directories: tuple[Path, ...], out: Path | None, 
         raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
     for directory in directories:
         target = out or directory / "report"
-        written = write_report(directory, target, plugins_of(ctx), correction)  # type: ignore[arg-type]
+        written = write_report(directory, target, plugins_of(ctx), correction)
         if is_quiet(ctx):
             click.echo(target)
         else:

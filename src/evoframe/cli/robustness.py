@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,14 +10,15 @@ from typing import Any
 
 import click
 from rich import progress
-from rich.console import Console
 from rich.table import Table
 
+from evoframe.analysis.corrections import Correction
 from evoframe.candidates import read_candidates
 from evoframe.cli.context import (
     common_options,
     correction_option,
     is_quiet,
+    messages,
     needing_extra,
     output,
     plugins_of,
@@ -27,6 +27,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.layers import Layer
+from evoframe.measurement_files import refuse_another, write_measurement
 from evoframe.robustness import measure, setting_of
 
 __all__ = ["robustness"]
@@ -81,7 +82,7 @@ def robustness(
     out: Path | None,
     force: bool,
     as_json: bool,
-    correction: Any,
+    correction: Correction,
     preset: str | None,
     overrides: tuple[str, ...],
     workers: list[Layer],
@@ -99,18 +100,18 @@ def robustness(
     candidates = read_candidates(sources, preset, settings, plugins_of(ctx), published=published)
     setting = setting_of(candidates, seed, controllers)
     directory = out or _default_directory(sources)
-    analysis.refuse_another(directory, setting, force=force)
+    refuse_another(directory, setting, force=force)
     prepare_directory(directory)  # before the time that it takes to measure
     with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as told:
         measured = measure(candidates, setting, told)
+    written = write_measurement(measured, directory)  # before anything is concluded from it
     found = analysis.find(measured, correction)
-    written = analysis.write_robustness(found, directory)
-    document = analysis.as_json(found)
+    written += analysis.write_findings(found, directory)
     if as_json:
-        click.echo(json.dumps(document))
+        click.echo(json.dumps(analysis.as_json(found)))
         return
-    output().print(_table(document))
-    click.echo(f"\n{document['conclusions']}", nl=False)
+    output().print(_table(analysis.records(analysis.groups_table(found)), setting.unit))
+    click.echo(f"\n{analysis.conclusions(found)}", nl=False)
     if not is_quiet(ctx):
         click.echo(f"{len(written)} files are in {directory}", err=True)
 
@@ -124,9 +125,7 @@ def _default_directory(sources: tuple[Path, ...]) -> Path:
 @contextmanager
 def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
     """Show on a terminal how many simulations are done; yield who is told."""
-    console = Console(
-        stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
-    )
+    console = messages()
     bar = progress.Progress(
         progress.TextColumn("{task.completed:,} of {task.total:,} simulations"),
         progress.BarColumn(bar_width=None),
@@ -142,14 +141,14 @@ def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
         yield lambda done: bar.advance(task, done)
 
 
-def _table(document: dict[str, Any]) -> Table:
+def _table(groups: list[dict[str, Any]], unit: str) -> Table:
     """Return the groups as a person reads them: a line each, displacements in millimetres."""
-    factor, shown = (1000.0, "mm") if document["unit"] == "m" else (1.0, document["unit"])
+    factor, shown = (1000.0, "mm") if unit == "m" else (1.0, unit)
     table = Table(box=None, header_style="bold")
     table.add_column("", overflow="fold")
     for heading in ("bodies", f"median {shown}".rstrip(), "quartiles", "range", "positive", "diverged"):
         table.add_column(heading, justify="right", overflow="fold")
-    for row in document["tables"]["groups"]:
+    for row in groups:
         table.add_row(row["group"], str(row["bodies"]), *_spread(row, factor), str(row["diverged"]))
     return table
 

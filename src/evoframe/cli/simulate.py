@@ -17,7 +17,6 @@ from evoframe.cli.context import (
     preset_option,
     scored,
     set_option,
-    unit_of,
     workers_option,
 )
 from evoframe.config import RunConfig
@@ -25,6 +24,7 @@ from evoframe.errors import InputError
 from evoframe.evaluation import Score
 from evoframe.jobs import Job, naming, read_job
 from evoframe.layers import Layer
+from evoframe.protocols import unit_of
 from evoframe.run import evaluator_of
 from evoframe.values import Design, Record
 
@@ -101,7 +101,7 @@ def _table(jobs: list[Job], scores: list[list[Score]]) -> Table:
     table.add_column("body", overflow="fold")
     table.add_column("displacement", overflow="fold")
     for job, some in zip(jobs, scores, strict=True):
-        unit = unit_of(job.config)
+        unit = unit_of(job.config.objective.component)
         for label, score in zip(job.labels, some, strict=True):
             step = f" at step {score.diverged_at}" if score.value is None else ""
             table.add_row(label, scored(score.value, unit) + step)

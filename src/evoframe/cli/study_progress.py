@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import statistics
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from typing import Self
 
 import attrs
-from rich.console import Console, Group
+from rich.console import Group
 from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from evoframe.cli.context import messages
 from evoframe.loading import load_run
 from evoframe.study.plan import Cell, Planned
 from evoframe.study.pool import End
@@ -58,9 +58,7 @@ class StudyProgress:
         *,
         quiet: bool,
     ) -> None:
-        self._console = Console(
-            stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
-        )
+        self._console = messages()
         self._headings, self._quiet = headings, quiet
         self._todo, self._shares = list(todo), dict[Planned, float]()
         self._cells: dict[Cell, _State] = {}

@@ -16,14 +16,9 @@ from hypothesis import strategies as st
 from measuring import measure
 
 from evoframe import InputError, Robustness
-from evoframe.analysis.robustness import (
-    as_json,
-    files,
-    find,
-    read_robustness,
-    refuse_another,
-    write_robustness,
-)
+from evoframe import measurement_files as files
+from evoframe.analysis.robustness import as_json, find, write_robustness
+from evoframe.measurement_files import read_robustness, refuse_another
 
 NAMES = {
     "scores.csv", "robustness.json", "conclusions.txt", "violins.pdf", "violins.svg", "violins.png",

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from measuring import measure
 
 from evoframe import Robustness
+from evoframe.analysis.corrections import CORRECTIONS, Correction
 from evoframe.analysis.robustness import conclusions, find
 from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
-from evoframe.analysis.statistics import CORRECTIONS, Correction
 
 
 def lifted(measured: Robustness, step: float) -> Robustness:
@@ -148,15 +148,15 @@ class TestWords:
         words = conclusions(find(measure([1.0, 2.0, 3.0], 50, groups="XXY")))
         assert "With each controller, a group is worth the median of its bodies' scores." in words
         assert "One value for each body, its median: Y = X" in words
-        assert "With 1 body in the smallest group, a difference would have to be enormous" in words
+        assert "With 1 body in the smallest group these tests, whose" in words
         assert "Y is one body: no sample of a method." in words
         assert "Only this comparison is about what made the bodies" in words
         assert "Each group is one body" not in words
 
     def test_say_how_small_a_difference_was_found(self) -> None:
         words = conclusions(find(lifted(measure([1.0, 1.0], 50, unit="m"), 0.002)))
-        assert "B beats A with 100.0% of the controllers (p < 0.001) (Wilcoxon's test)." in words
-        assert "The smallest found here: the medians of B and A are 2 mm apart." in words
+        assert "B is above A (the greater with 100.0% of the controllers, p < 0.001), by Wilcoxon's" in words
+        assert "The smallest found here: the medians of the scores of B and A are 2 mm apart." in words
 
     def test_say_what_diverged_and_what_rests_on_the_others(self) -> None:
         measured = measure([1.0, 2.0], 50, most=1.5)
@@ -185,5 +185,7 @@ class TestWords:
 
     def test_of_many_groups_name_no_pairs(self) -> None:
         words = conclusions(find(lifted(measure([1.0] * 12, 50), 1.0)))
-        assert "66 of 66 pairs differ (Wilcoxon's test); the tables name them." in words
-        assert " of 66 pairs differ (Dunn's test, corrected after Holm); the tables name them." in words
+        assert (
+            "66 of 66 pairs differ by Wilcoxon's test, corrected after Holm; the tables name them." in words
+        )
+        assert " of 66 pairs differ by Dunn's test, corrected after Holm; the tables name them." in words

@@ -1,26 +1,24 @@
 """What a measurement of robustness says: statistics, figure, words and files."""
 
-from evoframe.analysis.robustness.files import (
-    SETTING_FILE,
-    as_json,
-    read_robustness,
-    refuse_another,
-    write_robustness,
-)
+from evoframe.analysis.robustness.files import as_json, records, write_findings, write_robustness
 from evoframe.analysis.robustness.findings import Findings, find
-from evoframe.analysis.robustness.section import robustness_report
+from evoframe.analysis.robustness.section import RobustnessPart, robustness_part
+from evoframe.analysis.robustness.tables import groups_table
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
+from evoframe.measurement_files import read_robustness
 
 __all__ = [
-    "SETTING_FILE",
     "Findings",
+    "RobustnessPart",
     "as_json",
     "conclusions",
     "find",
+    "groups_table",
     "read_robustness",
-    "refuse_another",
-    "robustness_report",
+    "records",
+    "robustness_part",
     "violins",
+    "write_findings",
     "write_robustness",
 ]

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe.analysis.blocks import BlockComparison, compare_blocks
-from evoframe.analysis.statistics import Comparison, Correction, compare
+from evoframe.analysis.corrections import Correction
+from evoframe.analysis.statistics import Comparison, compare
 from evoframe.measurement import Robustness
 
 __all__ = ["Findings", "find"]

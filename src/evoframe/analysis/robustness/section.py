@@ -2,68 +2,88 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import attrs
+
+from evoframe.analysis.corrections import Correction
 from evoframe.analysis.page import Block, Picture, Section, Words
-from evoframe.analysis.robustness.files import SETTING_FILE, read_robustness
 from evoframe.analysis.robustness.findings import find
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.analysis.statistics import Correction
 from evoframe.analysis.writing import Rendered, rendered
-from evoframe.candidates import read_candidates
 from evoframe.files import is_file, shown_name
 from evoframe.measurement import Robustness
+from evoframe.measurement_files import SETTING_FILE, read_robustness
 from evoframe.plugins import Plugins
-from evoframe.robustness import setting_of
+from evoframe.robustness import Measurable, measurable
 
-__all__ = ["robustness_report"]
+__all__ = ["RobustnessPart", "robustness_part"]
 
-_TITLE = "Robustness"
-_STALE = "The measurement that is there is of other champions, or simulates them otherwise than this"
+_STALE = "The measurement that is there is of other champions"
+_CAPTION = "All bodies with the same random controllers (evoframe robustness)."
+_OTHERWISE = (
+    "They were simulated otherwise than in the runs they come from; robustness.json in the folder robustness "
+    "says how."
+)
 
 
-def robustness_report(
-    directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm"
-) -> tuple[Sequence[Path], Sequence[Section]]:
-    """Write the violins of the measurement in a run's or a study's directory.
+@attrs.frozen(eq=False)
+class RobustnessPart:
+    """What a report has of a measurement; nothing if there is none.
+
+    Attributes:
+        blocks: What the page shows.
+        figure: The violins, as files.
+    """
+
+    blocks: Sequence[Block] = ()
+    figure: Rendered | None = None
+
+    @property
+    def sections(self) -> list[Section]:
+        """Its section of the page, if it has one."""
+        return [Section("Robustness", self.blocks)] if self.blocks else []
+
+    def write(self, target: Path) -> list[Path]:
+        """Write the figure, if there is one, and return what was written.
+
+        Raises:
+            RunError: It cannot be written.
+        """
+        return [] if self.figure is None else self.figure.write(target)
+
+
+def robustness_part(directory: Path, plugins: Plugins, correction: Correction = "holm") -> RobustnessPart:
+    """Return what a report has of the measurement in a run's or a study's directory.
 
     Args:
         directory: Of the run or study.
-        target: Where the report is written to.
         plugins: The plugins that configurations name.
         correction: Of the p-values of pairs.
 
-    Returns:
-        What was written, and what the page shows; nothing if there is no measurement.
-
     Raises:
-        InputError: The measurement is damaged.
-        RunError: The figure cannot be written.
+        ConfigurationError: A champion that is there cannot be read with these plugins.
+        InputError: The measurement, or a champion, is damaged.
     """
     place = directory / "robustness"
     if not is_file(place / SETTING_FILE):
-        return (), ()
+        return RobustnessPart()
     measured = read_robustness(place)
-    if not _is_of(measured, directory, plugins):
+    champions = list(measurable(directory, plugins))
+    if not {body.digest for body in measured.setting.bodies} >= {each.digest for each in champions}:
         again = f"evoframe robustness {shown_name(directory)} --force"
-        return (), (Section(_TITLE, [Words(f"{_STALE}; to measure again: {again}")]),)
-    figure, words = rendered(violins(measured), "violins"), conclusions(find(measured, correction))
-    return figure.write(target), (Section(_TITLE, _blocks(figure, words)),)
+        return RobustnessPart([Words(f"{_STALE}; to measure again: {again}")])
+    figure = rendered(violins(measured), "violins")
+    return RobustnessPart([*_blocks(measured, champions, figure, correction)], figure)
 
 
-def _is_of(measured: Robustness, directory: Path, plugins: Plugins) -> bool:
-    """Return whether all champions of a directory were measured, simulated as they are there."""
-    candidates = read_candidates([directory], None, (), plugins)
-    now, then = setting_of(candidates, measured.setting.seed, measured.setting.controllers), measured.setting
-    there = {body.digest for body in then.bodies}
-    simulation = json.loads(json.dumps(now.simulation))  # tuples are read back as lists
-    return simulation == then.simulation and there >= {body.digest for body in now.bodies}
-
-
-def _blocks(figure: Rendered, words: str) -> list[Block]:
-    caption = "All bodies with the same random controllers (evoframe robustness)."
-    paragraphs = [Words(paragraph) for paragraph in words.strip().split("\n\n")]
-    return [Picture(caption, figure.svg), *paragraphs]
+def _blocks(
+    measured: Robustness, champions: Sequence[Measurable], figure: Rendered, correction: Correction
+) -> Iterator[Block]:
+    yield Picture(_CAPTION, figure.svg)
+    if any(each.simulation != measured.setting.simulation for each in champions):
+        yield Words(_OTHERWISE)
+    for paragraph in conclusions(find(measured, correction)).strip().split("\n\n"):
+        yield Words(paragraph)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from evoframe.analysis.blocks import BlockComparison, BlockPair
+from evoframe.analysis.pairs import oriented
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics import Comparison
-from evoframe.analysis.words import conclusion, in_words, listed
+from evoframe.analysis.words import conclusion, corrected, in_words, listed
 from evoframe.measurement import Robustness
 
 __all__ = ["conclusions"]
@@ -15,6 +16,7 @@ __all__ = ["conclusions"]
 _ALPHA = 0.05
 _MANY = 300  # controllers, with which one body that beats another with 58 % of them is found
 _MOST = 10  # pairs, or names, that a reader follows
+_FEWEST = 6  # controllers; whoever wins with all of 5 may do so by chance in 1 of 16 cases
 _CONTROLLERS = ("controller", "controllers")
 
 
@@ -101,20 +103,20 @@ def _overall(blocks: BlockComparison) -> str:
 
 def _pairs(blocks: BlockComparison) -> str:
     different = [pair for pair in blocks.pairs if pair.p < _ALPHA]
-    if blocks.p >= _ALPHA or not different:
-        return "No pair should be called different."
+    test = f"Wilcoxon's test, {corrected(blocks.correction)}"
+    if blocks.blocks < _FEWEST:
+        least = 2.0 ** (1 - blocks.blocks)
+        return f"No pair can be told apart: with {blocks.blocks} controllers p is at least {least:.3g}."
+    if not different:
+        return f"No pair can be told apart by {test}."
     if len(different) > _MOST:
-        return (
-            f"{len(different)} of {len(blocks.pairs)} pairs differ (Wilcoxon's test); the tables name them."
-        )
-    return f"{listed([_greater(pair) for pair in different])} (Wilcoxon's test)."
+        return f"{len(different)} of {len(blocks.pairs)} pairs differ by {test}; the tables name them."
+    return f"{listed([_greater(oriented(pair)) for pair in different])}, by {test}."
 
 
 def _greater(pair: BlockPair) -> str:
-    first, second, wins = pair.first, pair.second, pair.wins
-    if wins < 0.5:
-        first, second, wins = second, first, 1 - wins
-    return f"{first} beats {second} with {wins:.1%} of the controllers (p {in_words(pair.p)})"
+    often = f"the greater with {pair.wins:.1%} of the controllers"
+    return f"{pair.first} is above {pair.second} ({often}, p {in_words(pair.p)})"
 
 
 def _size(found: Findings, blocks: BlockComparison) -> str:
@@ -139,7 +141,10 @@ def _smallest(found: Findings, blocks: BlockComparison) -> Iterator[str]:
         gap, pair = min(gaps, key=lambda found: found[0])
         unit = found.measured.setting.unit
         shown = f"{1000 * gap:.3g} mm" if unit == "m" else f"{gap:.3g} {unit}".rstrip()
-        yield f"The smallest found here: the medians of {pair.first} and {pair.second} are {shown} apart."
+        several = len(found.measured.setting.bodies) > len(found.measured.setting.groups)
+        what = "what a controller finds {} and {} to be worth" if several else "the scores of {} and {}"
+        two = what.format(pair.first, pair.second)
+        yield f"The smallest found here: the medians of {two} are {shown} apart."
 
 
 def _by_body(found: Findings) -> str:
