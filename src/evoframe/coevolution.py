@@ -22,7 +22,7 @@ from evoframe.protocols import Aggregator, CollaborationStrategy
 from evoframe.structuring import structure
 from evoframe.values import BestPair, Design, Pair, Scores, Turn, Workload
 
-__all__ = ["Coevolution"]
+__all__ = ["Coevolution", "first_meetings"]
 
 Meeting: TypeAlias = tuple[int, ...]
 """One position in each population."""
@@ -122,25 +122,18 @@ class Coevolution:
         started = time.perf_counter()
         for population in self.populations:
             population.reproduce()
-        everyone = range(len(self.populations))
-        meetings = [
-            meeting for index in everyone for meeting in self._meetings(index, self._everyone_else(index))
-        ]
-        return self._play(meetings, everyone, _arithmetic_mean, started)
+        met = first_meetings([len(population.genomes) for population in self.populations])
+        return self._play(met, range(len(self.populations)), _arithmetic_mean, started)
 
     def _take_turn(self, index: int) -> Turn:
         started = time.perf_counter()
         self.populations[index].reproduce()
         teams = list(zip(*self._chosen(index), strict=True))
-        return self._play(self._meetings(index, teams), [index], self.aggregator.aggregate, started)
+        met = _meetings(index, len(self.populations[index].genomes), teams)
+        return self._play(met, [index], self.aggregator.aggregate, started)
 
     def _closing_meeting(self) -> Turn:
         return self._play([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
-
-    def _everyone_else(self, index: int) -> list[tuple[int, ...]]:
-        """Return teams of which every member of every other population is part; small populations recur."""
-        sizes = [len(other.genomes) for i, other in enumerate(self.populations) if i != index]
-        return [tuple(position % size for size in sizes) for position in range(max(sizes))]
 
     def _chosen(self, index: int) -> list[list[int]]:
         """Return the positions of the collaborators from each population but one.
@@ -163,18 +156,13 @@ class Coevolution:
             chosen.append(selected.tolist())
         return chosen
 
-    def _meetings(self, index: int, teams: Sequence[tuple[int, ...]]) -> list[Meeting]:
-        """Return the meetings of each member of a population with each of the *teams* from the others."""
-        size = len(self.populations[index].genomes)
-        return [(*team[:index], member, *team[index:]) for member in range(size) for team in teams]
-
     def _fittest(self) -> Meeting:
         return tuple(population.fittest() for population in self.populations)
 
     def _play(self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float) -> Turn:
-        """Score all *meetings* of a turn, and let them judge some of the populations."""
+        """Score all *meetings* of a turn, which differ, and let them judge some of the populations."""
         simulated = self.evaluator.simulations
-        scores = self._scores(dict.fromkeys(meetings))
+        scores = self._scores(meetings)
         for index in judged:
             self._judge(index, scores, fold)
         self.turn += 1
@@ -258,6 +246,29 @@ class Coevolution:
             genomes={population.name: population.dump(i) for population, i in chosen},
             design=design,
         )
+
+
+def first_meetings(sizes: Sequence[int]) -> list[Meeting]:
+    """Return the meetings in which everyone meets everyone, each of them once.
+
+    Args:
+        sizes: Of the populations, in the order in which they take turns.
+    """
+    met: dict[Meeting, None] = {}
+    for index, size in enumerate(sizes):
+        met.update(dict.fromkeys(_meetings(index, size, _everyone_else(index, sizes))))
+    return list(met)
+
+
+def _everyone_else(index: int, sizes: Sequence[int]) -> list[Meeting]:
+    """Return teams of which every member of every other population is part; small populations recur."""
+    others = [size for i, size in enumerate(sizes) if i != index]
+    return [tuple(position % size for size in others) for position in range(max(others))]
+
+
+def _meetings(index: int, size: int, teams: Sequence[tuple[int, ...]]) -> list[Meeting]:
+    """Return the meetings of each member of a population with each of the *teams* from the others."""
+    return [(*team[:index], member, *team[index:]) for member in range(size) for team in teams]
 
 
 @attrs.frozen

@@ -10,6 +10,7 @@ __all__ = [
     "EvoframeError",
     "InputError",
     "LockedError",
+    "OccupiedError",
     "PluginError",
     "PluginWarning",
     "RunError",
@@ -35,6 +36,10 @@ class InputError(EvoframeError):
 
 class LockedError(InputError):
     """A run's directory that another process is writing to."""
+
+
+class OccupiedError(InputError):
+    """A directory for a new run that holds a run already."""
 
 
 class PluginError(EvoframeError):

@@ -1,4 +1,4 @@
-"""A run's directory is written by one process at a time."""
+"""What is written by one process at a time: a run's directory, and what the processes of a study share."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import filelock
 
 from evoframe.errors import InputError, LockedError
 
-__all__ = ["LOCK_FILE", "Lock", "locked", "released_on_error"]
+__all__ = ["LOCK_FILE", "Lock", "held", "held_after_others", "locked", "released_on_error"]
 
 LOCK_FILE = "run.lock"
 """Stays in the directory: to remove it would let two processes lock two files of one name."""
@@ -45,3 +45,39 @@ def released_on_error(lock: Lock) -> Iterator[None]:
     except BaseException:
         lock.release()
         raise
+
+
+@contextlib.contextmanager
+def held(directory: Path) -> Iterator[None]:
+    """Have the lock of a run's directory for as long as what follows takes.
+
+    Raises:
+        LockedError: As :func:`locked`.
+        InputError: As :func:`locked`.
+    """
+    lock = locked(directory)
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+@contextlib.contextmanager
+def held_after_others(path: Path) -> Iterator[None]:
+    """Have a lock for as long as what follows takes; wait for the processes that have it before.
+
+    Args:
+        path: A file of its own, which stays, as :data:`LOCK_FILE` does.
+
+    Raises:
+        InputError: It cannot be written.
+    """
+    lock = filelock.FileLock(path)
+    try:
+        lock.acquire()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+    try:
+        yield
+    finally:
+        lock.release()

@@ -21,8 +21,17 @@ from evoframe.provenance import differences, provenance
 from evoframe.resolve import load_config
 from evoframe.run import Execution, assemble, opened_store, verify_champion
 from evoframe.store import CONFIG_FILE, Store, is_leftover, remove
+from evoframe.verification import can_verify
 
-__all__ = ["configuration_of", "is_finished", "reopen", "restore", "resume"]
+__all__ = [
+    "configuration_of",
+    "is_finished",
+    "is_verified",
+    "reopen",
+    "restore",
+    "resume",
+    "verify_if_missing",
+]
 
 
 def resume(
@@ -53,9 +62,7 @@ def resume(
     directory = Path(directory)
     overrides = layers_of({"executor.workers": workers})
     if is_finished(directory):
-        config = configuration_of(directory, overrides, plugins)
-        if load_run(directory).verification is None:
-            verify_champion(config, directory)
+        verify_if_missing(directory, overrides, plugins)
         return load_run(directory)
     execution = reopen(directory, overrides, plugins, allow_different_versions=allow_different_versions)
     execution.play(Observers(execution.config.discovered.manager))
@@ -74,6 +81,35 @@ def is_finished(directory: Path) -> bool:
         return False
     run = load_run(directory)
     return run.finished and run.champion_is_written
+
+
+def is_verified(finished: Run, config: RunConfig) -> bool:
+    """Return whether the champion of a finished run was verified, or cannot be: there are no variants.
+
+    Raises:
+        InputError: The verification is damaged, or about another champion.
+    """
+    return not can_verify(config.simulator.component) or finished.verification is not None
+
+
+def verify_if_missing(
+    directory: Path, overrides: Sequence[str | Layer] = (), plugins: Plugins | None = None
+) -> None:
+    """Verify the champion of a finished run, if nobody has: see :func:`~evoframe.run.verify_champion`.
+
+    Args:
+        directory: The run's directory.
+        overrides: Settings of the executor.
+        plugins: The plugins to choose from.
+
+    Raises:
+        ConfigurationError: The configuration cannot be accepted, or is not that of the run.
+        InputError: The run or its verification is damaged, or another process writes to it.
+        RunError: The champion cannot be verified.
+    """
+    config = configuration_of(directory, overrides, plugins)
+    if not is_verified(load_run(directory), config):
+        verify_champion(config, directory)
 
 
 def reopen(

@@ -15,12 +15,19 @@ import tomli_w
 
 from evoframe.coevolution import Coevolution
 from evoframe.config import RunConfig
-from evoframe.errors import ComponentError, ConfigurationError, EvoframeError, InputError, RunError
+from evoframe.errors import (
+    ComponentError,
+    ConfigurationError,
+    EvoframeError,
+    InputError,
+    OccupiedError,
+    RunError,
+)
 from evoframe.evaluation import Evaluator
 from evoframe.exporting import exports
 from evoframe.layers import layers_of
 from evoframe.loading import Run, has_begun, load_run
-from evoframe.locking import LOCK_FILE, Lock, locked, released_on_error
+from evoframe.locking import LOCK_FILE, Lock, held, locked, released_on_error
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.population import Population
@@ -224,18 +231,20 @@ def verify_champion(config: RunConfig, directory: Path) -> Verification | None:
         The verification; ``None`` if the simulator offers no variants.
 
     Raises:
+        LockedError: Another process writes to the directory.
         RunError: It cannot be done. The run itself is complete and saved.
     """
     if not can_verify(config.simulator.component):
         return None
-    try:
-        champion = load_run(directory).champion
-        [verification] = verified(config, [champion.design], champion.score)
-        keep_verification(directory, verification)
-    except Exception as error:
-        cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
-        complete = f"{directory}: the run is complete and saved"
-        raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
+    with held(directory):
+        try:
+            champion = load_run(directory).champion
+            [verification] = verified(config, [champion.design], champion.score)
+            keep_verification(directory, verification)
+        except Exception as error:
+            cause = str(error) if isinstance(error, EvoframeError) else f"{type(error).__name__}: {error}"
+            complete = f"{directory}: the run is complete and saved"
+            raise RunError(f"{complete}, but its champion cannot be verified: {cause}") from error
     return verification
 
 
@@ -249,7 +258,8 @@ def prepare(config: RunConfig, out: Path | None = None) -> Execution:
 
     Raises:
         ConfigurationError: A component refuses to start; there is no directory then.
-        InputError: The directory is not empty, or cannot be made.
+        OccupiedError: The directory holds a run, perhaps one that another process has just begun.
+        InputError: It is not empty, or cannot be made.
     """
     coevolution = assemble(config)
     try:
@@ -314,7 +324,9 @@ def _refuse_occupied(directory: Path) -> None:
         finished = has_begun(directory) and load_run(directory).finished
         what = "holds a finished run" if finished else "holds a run that is not finished"
         todo = "" if finished else f"; to go on with it: evoframe resume {directory}"
-        raise InputError(f"{directory}: is not empty: it {what}; choose another directory with --out{todo}")
+        raise OccupiedError(
+            f"{directory}: is not empty: it {what}; choose another directory with --out{todo}"
+        )
     if names:
         raise InputError(f"{directory}: is not empty; choose another directory with --out")
 

@@ -15,6 +15,7 @@ from processes import Evoframe, on_a_terminal, started, told
 from toy_study import STUDY
 
 from evoframe import load_run
+from evoframe.cores import available_cores
 
 SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
 
@@ -35,6 +36,8 @@ def tables(directory: Path) -> dict[str, list[list[str]]]:
         header, *lines = csv.reader((directory / name).read_text().splitlines())
         kept = [i for i, column in enumerate(header) if column not in ("seconds", "simulations")]
         found[name] = [[line[i] for i in kept] for line in (header, *lines)]
+    for path in directory.rglob("verification.json"):
+        found[str(path.relative_to(directory))] = [[path.read_text()]]
     return found
 
 
@@ -59,6 +62,16 @@ def test_a_dry_run_says_how_much_it_is_and_writes_nothing(
     assert "0 finished, 12 to run" in told_of.stdout
     assert "from the first turn of one run" in told_of.stdout
     assert not (tmp_path / "studies").exists()
+
+
+def test_a_dry_run_counts_on_the_workers_that_are_asked_for(evoframe: Evoframe, toy: list[str]) -> None:
+    alone = evoframe("study", *toy, "--dry-run", "--workers", "1").stdout
+    assert "on 1 core, from" in alone
+    one = ("--set", "runs=1", "--set", "grid.collaboration.n=[1]", "--set", "grid.simulator=['toy-product']")
+    assert "on 1 core, from" in evoframe("study", *toy, *one, "--dry-run", "--workers", "8").stdout
+    for workers in ((), ("--workers", "1000")):
+        together = evoframe("study", *toy, "--dry-run", *workers).stdout
+        assert f"on {min(12, available_cores())} core" in together
 
 
 def test_a_dry_run_changes_nothing_that_is_there(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
@@ -114,6 +127,27 @@ def test_runs_that_fail_are_listed_and_retried_on_demand(
     assert "runs done" not in again.stderr
     (tmp_path / "sound").touch()
     assert evoframe(*arguments, "--retry").returncode == 0
+
+
+def test_champions_that_were_not_verified_are_verified_by_the_next_sitting(
+    evoframe: Evoframe, toy: list[str], tmp_path: Path
+) -> None:
+    unverifiable = 'grid.simulator=[{name="toy-unverifiable", mended="mended"}]'
+    arguments = ["study", *toy, "--set", unverifiable, "--set", "runs=1", "--out", "s"]
+    failed = evoframe(*arguments)
+    assert failed.returncode == 1
+    assert "but its champion cannot be verified: no variant fits" in failed.stderr
+    (tmp_path / "mended").touch()
+    assert evoframe(*arguments).returncode == 1  # not tried again
+    first, second = (tmp_path / "s").glob("*/*/00")
+    (first / "failure.json").unlink()  # as if the process had been killed before it verified
+    left = evoframe(*arguments, "--dry-run", "--retry")
+    assert "1 finished, of which 1 to verify, 1 to run" in left.stdout
+    assert evoframe(*arguments).returncode == 1  # the second has failed
+    assert evoframe(*arguments, "--retry").returncode == 0
+    for directory in (first, second):
+        assert load_run(directory).verification is not None
+        assert load_run(directory).resumes == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
@@ -182,6 +216,23 @@ def test_runs_at_which_another_process_is_are_left_to_it(
     assert "failed" not in other.stderr
     assert len(list((tmp_path / "s").glob("*/*/0?/champion.json"))) == 12
     for config in (tmp_path / "s").glob("*/*/0?/config.toml"):
+        assert load_run(config.parent).resumes == []
+
+
+@pytest.mark.parametrize("attempt", range(4))
+def test_processes_that_start_together_divide_the_runs_among_them(
+    toy: list[str], tmp_path: Path, attempt: int
+) -> None:
+    arguments = ["study", *toy, "--workers", "1", "--out", "s"]
+    with started(tmp_path, *arguments) as one, started(tmp_path, *arguments) as other:
+        said = other.communicate(timeout=120)[1] + one.communicate(timeout=120)[1]
+    assert "failed" not in said
+    assert 0 in (one.returncode, other.returncode), said
+    assert {one.returncode, other.returncode} <= {0, 1}, said  # 1: it left the last run to the other
+    assert not list((tmp_path / "s").rglob("failure.json"))
+    assert len((tmp_path / "s" / "rows.csv").read_text().splitlines()) == 13
+    for config in (tmp_path / "s").glob("*/*/0?/config.toml"):
+        assert load_run(config.parent).finished
         assert load_run(config.parent).resumes == []
 
 

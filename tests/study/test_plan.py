@@ -7,14 +7,26 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import pytest
+import tomli_w
 from toy_study import STUDY
 
 from evoframe import ConfigurationError, run
+from evoframe.coevolution import first_meetings
 from evoframe.discovery import discover
 from evoframe.study.plan import Study, read_study, study_names
+from evoframe.study.rows import Row
 
 Read = Callable[..., Study]
+
+THREE = """
+extends = "toy.toml"
+runs = 1
+
+[grid]
+"collaboration.n" = [2]
+"""
 
 
 def seeds(study: Study) -> dict[tuple[str, int], int]:
@@ -56,6 +68,24 @@ class TestCells:
             made = run(cell.config, out=tmp_path / cell.folder)
             turns = cell.config.run.generations * len(cell.config.populations)
             assert cell.pairs == sum(row["pairs"] for row in made.workload if row["turn"] <= turns)
+
+    @pytest.mark.parametrize("sizes", [(2, 2, 3), (3, 2, 2), (2, 4, 3)])
+    def test_of_three_populations_count_their_pairs_too(
+        self, toy_study: Read, tmp_path: Path, sizes: tuple[int, int, int]
+    ) -> None:
+        populations = {
+            role: {
+                "size": size,
+                "encoder": {"name": "toy-number", "role": role},
+                "evolver": "toy-drift",
+            }
+            for role, size in zip("abc", sizes, strict=True)
+        }
+        text = tomli_w.dumps({"populations": populations})
+        [cell] = toy_study("runs=1", text=f"{THREE}\n{text}").cells
+        made = run(cell.config, out=tmp_path / "run")
+        assert made.workload[0]["pairs"] == len(first_meetings(sizes))
+        assert cell.pairs == sum(row["pairs"] for row in made.workload if row["turn"] <= 12)
 
 
 class TestOrder:
@@ -107,6 +137,11 @@ class TestSeeds:
             "grid: collaboration.m=1: collaboration.m: unknown option",
         ),
         (('"collaboration.n"', '"run.seed"'), "grid: run.seed: seeds are derived"),
+        (
+            ('"collaboration.n" = [1, 2]', "run = [{ generations = 2 }, { seed = 4 }]"),
+            "grid: run: is a column of the study's tables already; give its settings one by one",
+        ),
+        (("[1, 2]", '[1, "1"]'), 'grid.collaboration.n: expected different values, found [1, "1"]'),
         (('"collaboration.n"', '"a b"'), "grid: 'a b' is no key"),
         (("[grid]", "[grit]"), "grid: is missing"),
         (("runs = 3", "runs = 1000000"), "a study of 4000000 runs; at most 1000000"),
@@ -116,6 +151,12 @@ def test_mistakes_are_named(toy_study: Read, change: tuple[str, str], message: s
     with pytest.raises(ConfigurationError) as caught:
         toy_study(text=STUDY.replace(*change))
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("column", [*attrs.fields_dict(Row), "curve"])
+def test_no_key_of_a_grid_is_called_like_a_column(toy_study: Read, column: str) -> None:
+    with pytest.raises(ConfigurationError):
+        toy_study(text=STUDY.replace('"collaboration.n" = [1, 2]', f"{column} = [{{ generations = 2 }}]"))
 
 
 def test_a_study_that_is_nowhere_is_said_to_be(toy_plugins: Any) -> None:

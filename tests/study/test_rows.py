@@ -21,7 +21,9 @@ from evoframe.study.rows import Row, read_rows, row_of, write_rows
 
 Read = Callable[..., Study]
 
-words = st.text(st.characters(codec="utf-8", exclude_characters="\r\0"), min_size=1, max_size=8)
+RESULTS = Path(__file__).parents[2] / "docs" / "results"
+
+words = st.text(st.characters(codec="utf-8"), min_size=1, max_size=8)
 finite = st.floats(allow_nan=False, allow_infinity=False)
 rows = st.builds(
     Row,
@@ -45,6 +47,13 @@ rows = st.builds(
 def test_rows_are_read_as_they_were_written(tmp_path: Path, given_rows: list[Row]) -> None:
     write_rows(given_rows, tmp_path / "rows.csv")
     assert read_rows(tmp_path / "rows.csv") == given_rows
+
+
+@pytest.mark.parametrize("path", sorted(RESULTS.glob("*/rows.csv")), ids=lambda path: path.parent.name)
+def test_rows_that_are_published_are_written_as_they_stand(tmp_path: Path, path: Path) -> None:
+    write_rows(read_rows(path), tmp_path / "rows.csv")
+    for name in ("rows.csv", "curves.csv"):
+        assert (tmp_path / name).read_bytes() == path.with_name(name).read_bytes()
 
 
 def kept(study: Study, directory: Path) -> list[Row]:

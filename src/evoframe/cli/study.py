@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import attrs
@@ -15,7 +16,7 @@ from evoframe.cli.context import common_options, is_quiet, modules_of, output, p
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
 from evoframe.cores import available_cores
-from evoframe.study.conduct import claim, conduct, refuse_another, survey
+from evoframe.study.conduct import alone, claim, conduct, refuse_another, survey
 from evoframe.study.estimate import estimated
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study, read_study, study_names
@@ -89,16 +90,22 @@ def study(
     directory = out or Path("studies") / found.label
     if not dry_run:
         claim(found, directory)
-        if tables:
-            import_rows(found, directory, tables)
     elif directory.exists():
         refuse_another(found, directory)
-    imported = imported_rows(found, directory, tables)
+    imported = _imported(found, directory, tables, dry_run=dry_run)
     sitting = _Sitting(ctx, found, directory, imported, survey(found, directory, imported), retry)
     if dry_run:
-        sitting.tell()
+        sitting.tell(workers or available_cores())
         return
     sitting.work(workers or available_cores())
+
+
+def _imported(study: Study, directory: Path, tables: Sequence[Path], *, dry_run: bool) -> dict[Planned, Row]:
+    """Return the rows that came from elsewhere, and keep those of more tables, if that is no dry run."""
+    if dry_run or not tables:
+        return imported_rows(study, directory, tables)
+    with alone(directory):
+        return import_rows(study, directory, tables)
 
 
 @attrs.frozen
@@ -113,60 +120,64 @@ class _Sitting:
     retry: bool
 
     @property
-    def todo(self) -> list[Planned]:
+    def to_run(self) -> list[Planned]:
         return self._that_are("missing", "begun", *(["failed"] if self.retry else []))
+
+    @property
+    def to_verify(self) -> list[Planned]:
+        return [planned for planned in self._that_are("finished") if not self.statuses[planned].verified]
 
     def _that_are(self, *states: str) -> list[Planned]:
         return [planned for planned, status in self.statuses.items() if status.state in states]
 
-    def tell(self) -> None:
-        """Say what would be run."""
-        estimate = estimated(self.todo, self._that_are("finished"))
+    def tell(self, workers: int) -> None:
+        """Say what would be run by so many workers."""
+        estimate = estimated(self.to_run, self._that_are("finished"))
         done = self._that_are("finished", "imported")
-        cores = available_cores()
+        cores = max(1, min(workers, available_cores(), len(self.to_run)))  # that have something to do
         table = Table(box=None, show_header=False)
         table.add_column(style="bold", no_wrap=True)
         table.add_column(overflow="fold")
         table.add_row("configurations", f"{len(self.study.cells)}, {self.study.runs} runs each")
-        table.add_row("runs", f"{len(done)} finished, {len(self.todo)} to run")
-        table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.todo):,} to score")
-        table.add_row(
-            "time", f"{duration(estimate.seconds / cores)} on {cores} cores, from {estimate.measured}"
-        )
+        unverified = f", of which {len(self.to_verify)} to verify" if self.to_verify else ""
+        table.add_row("runs", f"{len(done)} finished{unverified}, {len(self.to_run)} to run")
+        table.add_row("pairs", f"{sum(planned.cell.pairs for planned in self.to_run):,} to score")
+        on = "1 core" if cores == 1 else f"{cores} cores"
+        table.add_row("time", f"{duration(estimate.seconds / cores)} on {on}, from {estimate.measured}")
         table.add_row("room", f"{estimate.megabytes:,.0f} MB in {self.directory}")
         output().print(table)
         self._tell_failed(self.statuses)
 
     def work(self, workers: int) -> None:
         """Run what is missing, and show what came of it."""
-        before = {planned: row.score for planned, row in gather(self.statuses, self.imported).items()}
+        todo = [*self.to_verify, *self.to_run]
+        rows = gather(self.statuses, self.imported)
+        before = {planned: row.score for planned, row in rows.items() if self.statuses[planned].is_complete}
         study, modules = self.study, modules_of(self.ctx)
-        orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in self.todo}
+        orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in todo}
         with stop_on_signals("the turns in progress") as stop:
-            interrupted = False
-            try:
-                with StudyProgress(study.headings, self.todo, before, quiet=is_quiet(self.ctx)) as progress:
-                    conduct(orders, workers, progress, stop.is_asked)
-            except KeyboardInterrupt:
-                interrupted = True
-        self._end(stop.exit_code if interrupted or stop.is_asked() else 0)
+            progress = StudyProgress(study.headings, todo, before, quiet=is_quiet(self.ctx))
+            with contextlib.suppress(KeyboardInterrupt), progress:  # the second signal: it is asked to stop
+                conduct(orders, workers, progress, stop.is_asked)
+        self._end(stop.exit_code if stop.is_asked() else 0)
 
     def _end(self, code: int) -> None:
         """Show what there is, and leave with an exit code that says whether that is all."""
-        statuses = survey(self.study, self.directory, self.imported)
-        rows = gather(statuses, self.imported)
-        write_rows(list(rows.values()), self.directory / ROWS_FILE)
+        with alone(self.directory):  # so that the last process to write has seen what all of them made
+            statuses = survey(self.study, self.directory, self.imported)
+            rows = gather(statuses, self.imported)
+            write_rows(list(rows.values()), self.directory / ROWS_FILE)
         if is_quiet(self.ctx):
             click.echo(self.directory)
         else:
             output().print(_results(self.study, rows))
         self._tell_failed(statuses)
+        left = sum(not status.is_complete for status in statuses.values())
         if code:
-            left = len(statuses) - len(rows)
             click.echo(
                 f"Interrupted; {left} runs are left in {self.directory}; the same command goes on", err=True
             )
-        self.ctx.exit(code or int(len(rows) < len(statuses)))
+        self.ctx.exit(code or int(left > 0))
 
     def _tell_failed(self, statuses: Mapping[Planned, Status]) -> None:
         failed = {planned: status for planned, status in statuses.items() if status.state == "failed"}

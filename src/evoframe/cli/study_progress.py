@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Self
 
 import attrs
@@ -40,6 +40,54 @@ class _State:
             self.best = score if self.best is None else max(score, self.best)
 
 
+class _Work:
+    """What there is to do, and what this sitting has done of it, in pairs, which take the time.
+
+    Args:
+        todo: The runs that will be made, or gone on with.
+    """
+
+    def __init__(self, todo: Iterable[Planned]) -> None:
+        self.done = 0.0
+        self._left = {planned: float(planned.cell.pairs) for planned in todo}
+        self._whole = self.left
+        self._seen: set[Planned] = set()
+
+    @property
+    def left(self) -> float:
+        """How many pairs are left of the runs that have not ended."""
+        return sum(self._left.values())
+
+    def saw(self, planned: Planned, turn: int) -> None:
+        """A run has finished a turn; those before the first that is seen were made in an earlier sitting."""
+        config = planned.cell.config
+        turns = config.run.generations * len(config.populations) + 1
+        pairs = planned.cell.pairs / turns
+        if planned not in self._seen:
+            self._seen.add(planned)
+            self._left[planned] = max(0, turns - turn) * pairs
+        left = max(0, turns - turn - 1) * pairs
+        self.done += self._left[planned] - left
+        self._left[planned] = left
+
+    def ended(self, planned: Planned, *, finished: bool) -> None:
+        """Nothing is left to do of a run; where it is finished, what was left is done, if any was seen."""
+        left = self._left.pop(planned)
+        if finished and planned in self._seen:
+            self.done += left
+
+    def times(self, elapsed: float) -> list[str]:
+        """Return rate and time left, if anything was done in so many seconds."""
+        if not self.done or not elapsed:
+            return []
+        left = duration(elapsed * self.left / self.done)
+        return [f"{self.done / elapsed:,.0f} pairs/s", f"{left} left"]
+
+    def bar(self) -> ProgressBar:
+        """Return how much of it all is done, in which sitting ever."""
+        return ProgressBar(total=self._whole or 1, completed=self._whole - self.left)
+
+
 class StudyProgress:
     """Watches a study.
 
@@ -60,7 +108,7 @@ class StudyProgress:
     ) -> None:
         self._console = messages()
         self._headings, self._quiet = headings, quiet
-        self._todo, self._shares = list(todo), dict[Planned, float]()
+        self._work = _Work(todo)
         self._cells: dict[Cell, _State] = {}
         for planned in (*finished, *todo):
             self._cells.setdefault(planned.cell, _State(0)).total += 1
@@ -86,28 +134,24 @@ class StudyProgress:
     def began(self, planned: Planned) -> None:
         """Work on a run begins."""
         self._cells[planned.cell].running += 1
-        self._shares[planned] = 0.0
 
     def told(self, planned: Planned, turn: int, best: float | None) -> None:
         """A run has finished a turn."""
-        config = planned.cell.config
-        length = config.run.generations * len(config.populations)
-        self._shares[planned] = min(1.0, (turn + 1) / (length + 1))
+        self._work.saw(planned, turn)
         self._cells[planned.cell].saw(best)
 
     def ended(self, planned: Planned, end: End) -> None:
         """Work on a run has ended."""
         state, score = self._cells[planned.cell], None
         state.running -= 1
+        self._work.ended(planned, finished=end.state == "finished")
         if end.state == "finished":
             state.done += 1
-            self._shares[planned] = 1.0
             score = load_run(planned.directory).summary["best_pair_score"]
             state.saw(score)
             state.scores.append(score)
         elif end.state == "failed":
             state.failed += 1
-            self._shares[planned] = 1.0
         if end.state == "failed" or not (self._quiet or self._live is not None):
             self._console.print(self._line(planned, end, score), soft_wrap=True)
 
@@ -131,20 +175,9 @@ class StudyProgress:
         parts = [f"{done}/{total} runs done", f"{running} running", f"{left} left"]
         if failed:
             parts.append(f"{failed} failed")
-        return ", ".join([*parts, *self._times()])
-
-    def _times(self) -> list[str]:
-        """Return rate and time left, weighted with the pairs of the runs."""
-        worked = sum(planned.cell.pairs * share for planned, share in self._shares.items())
-        whole = sum(planned.cell.pairs for planned in self._todo)
-        elapsed = time.monotonic() - self._started
-        if not worked or not elapsed:
-            return []
-        return [f"{worked / elapsed:,.0f} pairs/s", f"{duration(elapsed * (whole - worked) / worked)} left"]
+        return ", ".join([*parts, *self._work.times(time.monotonic() - self._started)])
 
     def _picture(self) -> Group:
-        whole = sum(planned.cell.pairs for planned in self._todo) or 1
-        worked = sum(planned.cell.pairs * share for planned, share in self._shares.items())
         table = table_of_cells(self._headings, ("done", "running", "best pair", "median"))
         for cell, state in self._cells.items():
             median = statistics.median(state.scores) if state.scores else None
@@ -155,7 +188,7 @@ class StudyProgress:
                 "" if state.best is None else f"{state.best:.5g}",
                 "" if median is None else f"{median:.5g}",
             )
-        return Group(table, Text(self._tally()), ProgressBar(total=whole, completed=worked))
+        return Group(table, Text(self._tally()), self._work.bar())
 
 
 def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:

@@ -16,16 +16,19 @@ import tomli_w
 
 from evoframe.errors import InputError
 from evoframe.files import read_text
+from evoframe.locking import held_after_others
 from evoframe.provenance import differences
-from evoframe.store import write_atomically
+from evoframe.store import is_leftover, write_atomically
 from evoframe.study.plan import Planned, Study
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.progress import Status, forget_failure, note_failure, status
 from evoframe.study.worker import Order
 
-__all__ = ["STUDY_FILE", "Watcher", "claim", "conduct", "refuse_another", "survey"]
+__all__ = ["STUDY_FILE", "Watcher", "alone", "claim", "conduct", "refuse_another", "survey"]
 
 STUDY_FILE = "study.toml"
+
+_LOCK_FILE = "study.lock"
 
 _INTERVAL = 0.25  # s, between two looks at what the workers tell
 
@@ -57,8 +60,22 @@ def claim(study: Study, directory: Path) -> None:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
-    refuse_another(study, directory)
-    write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
+    refuse_another(study, directory)  # what is somebody else's gets no lock
+    with alone(directory):
+        refuse_another(study, directory)  # again: another process may have been faster
+        write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
+
+
+def alone(directory: Path) -> contextlib.AbstractContextManager[None]:
+    """Return what keeps other processes from writing the files that all runs of a study share.
+
+    Args:
+        directory: The directory of the study; :func:`claim` makes it.
+
+    Raises:
+        InputError: It cannot be written.
+    """
+    return held_after_others(directory / _LOCK_FILE)
 
 
 def refuse_another(study: Study, directory: Path) -> None:
@@ -70,17 +87,22 @@ def refuse_another(study: Study, directory: Path) -> None:
         InputError: It is the directory of another study, or of something else.
     """
     path = directory / STUDY_FILE
-    try:
-        occupied = not path.is_file() and any(directory.iterdir())
-    except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
-    if occupied:
-        raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
-    if path.is_file():
+    occupied = _is_occupied(directory)
+    if path.is_file():  # only now: another process makes it before anything else
         others = differences(_shared(_read(path)), _shared(_tables(study)))
         if others:
             listed = "\n  ".join(others)
             raise InputError(f"{path}: is another study; choose another directory:\n  {listed}")
+    elif occupied:
+        raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
+
+
+def _is_occupied(directory: Path) -> bool:
+    """Return whether there is more than what the processes that begin a study leave before its file."""
+    try:
+        return any(path.name != _LOCK_FILE and not is_leftover(path) for path in directory.iterdir())
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
 
 
 def survey(study: Study, directory: Path, imported: Collection[Planned] = ()) -> dict[Planned, Status]:
@@ -116,8 +138,7 @@ def conduct(
         stop: Asked again and again whether to stop; what is running stops after its turn.
     """
     pool = Pool(workers)
-    with contextlib.ExitStack() as stack:
-        stack.callback(pool.close)
+    with contextlib.closing(pool):
         _Conduct(orders, workers, watcher, pool).work(stop)
 
 
@@ -149,7 +170,7 @@ class _Conduct:
         self.watcher.began(planned)
 
     def _pass_on(self) -> None:
-        running = {str(planned.directory): planned for planned in self.running.values()}
+        running = {planned.directory: planned for planned in self.running.values()}
         for directory, turn, best in self.pool.news():
             if directory in running:
                 self.watcher.told(running[directory], turn, best)

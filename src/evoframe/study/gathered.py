@@ -17,13 +17,16 @@ IMPORTED = "imported"
 """Folder in the directory of a study with the rows that came from elsewhere."""
 
 
-def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> None:
+def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> dict[Planned, Row]:
     """Keep rows from elsewhere as those of finished runs of a study.
 
     Args:
         study: The study.
-        directory: Its directory.
+        directory: Its directory; no other process may import rows at the same time.
         paths: Tables as a study writes them, each perhaps with its curves beside it.
+
+    Returns:
+        All rows that were imported, as :func:`imported_rows`.
 
     Raises:
         InputError: A row is of no run of this study, or contradicts another of the same run; says which.
@@ -32,6 +35,7 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> None:
     folder = directory / IMPORTED
     folder.mkdir(exist_ok=True)
     write_rows(rows, folder / ROWS_FILE)
+    return _of_runs(rows, study, directory)
 
 
 def _joined(study: Study, directory: Path, paths: Iterable[Path]) -> list[Row]:
@@ -60,8 +64,12 @@ def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> d
     Raises:
         InputError: They are damaged, or were made otherwise than this study makes them.
     """
+    return _of_runs(_joined(study, directory, more), study, directory)
+
+
+def _of_runs(rows: Iterable[Row], study: Study, directory: Path) -> dict[Planned, Row]:
     planned, found = _by_key(study, directory), {}
-    for row in _joined(study, directory, more):
+    for row in rows:
         run = planned.get(_key(row))
         if run is not None:
             _refuse_another(row, run, directory / IMPORTED / ROWS_FILE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import itertools
 import json
@@ -13,6 +14,7 @@ from typing import Any, TypeAlias
 
 import attrs
 
+from evoframe.coevolution import first_meetings
 from evoframe.config import RunConfig
 from evoframe.errors import ConfigurationError
 from evoframe.layers import Layer, Layers, Tree, layer_of, read_layers
@@ -58,16 +60,17 @@ class Cell:
         """Where its runs lie in the directory of the study: a level for each key."""
         return Path(*(f"{key}={_plain(value)}" for key, value in self.settings))
 
-    @property
+    @functools.cached_property
     def pairs(self) -> int:
         """How many pairs a run scores, repeats included, the meeting at the end apart."""
         sizes = [population.size for population in self.config.populations.values()]
         strategy = self.config.collaboration.component
-        first = len({(a, b % sizes[1]) for a in range(sizes[0]) for b in range(max(sizes[1:]))})
-        turns = 0
+        generation = 0
         for index, size in enumerate(sizes):
-            turns += size * min(strategy.size(other) for i, other in enumerate(sizes) if i != index)
-        return first + self.config.run.generations * turns
+            # Several other populations give the same number of collaborators: a configuration is checked.
+            [teams] = {strategy.size(other) for i, other in enumerate(sizes) if i != index}
+            generation += size * teams
+        return len(first_meetings(sizes)) + self.config.run.generations * generation
 
     def seed(self, index: int) -> int:
         """Return the seed of one of its runs, which depends on nothing else in the study."""
@@ -203,7 +206,12 @@ def _grid(tree: Mapping[str, Any], origin: str) -> dict[str, tuple[Any, ...]]:
     for key, values in grid.items():
         if key == "run.seed":
             raise ConfigurationError(f"{origin}: grid: run.seed: seeds are derived; say with runs how many")
-        texts = [_identity(value) for value in values]
+        if key == "run":  # may set the seed too
+            raise ConfigurationError(
+                f"{origin}: grid: run: is a column of the study's tables already; give its settings one by "
+                "one, as in run.generations = [100, 200]"
+            )
+        texts = [shown(value) for value in values]
         if not values or len(set(texts)) < len(texts):
             raise ConfigurationError(
                 f"{origin}: grid.{key}: expected different values, found {found(list(values))}"
@@ -242,7 +250,7 @@ def _layers(settings: Settings) -> list[Layer]:
 
 
 def shown(value: Any) -> str:
-    """Return a value of the grid as text, the same for the same value only."""
+    """Return a value of the grid as text: another for each value of a key, or the grid is refused."""
     return value if isinstance(value, str) else _identity(value)
 
 

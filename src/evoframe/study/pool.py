@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.queues import SimpleQueue
-from typing import Any, Literal, TypeAlias
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Literal, TypeAlias
 
 import attrs
 import pebble
@@ -17,7 +18,7 @@ from evoframe.study.worker import Order, Talk, perform
 
 __all__ = ["End", "News", "Pool", "end_of"]
 
-News: TypeAlias = tuple[str, int, float | None]
+News: TypeAlias = tuple[Path, int, float | None]
 """Directory, latest turn, best score so far."""
 
 
@@ -35,12 +36,16 @@ class End:
 
 
 class Pool:
-    """Workers that are ready."""
+    """Workers that are ready.
+
+    Workers and this process share no lock: one that is killed while it has it would stop all others.
+    """
 
     def __init__(self, workers: int) -> None:
         context = WorkerProcesses.context
-        self._news: SimpleQueue[News] = context.SimpleQueue()
-        self._stop = context.Event()
+        self._news, self._tell = context.Pipe(duplex=False)
+        self._asked, self._stop = context.Pipe(duplex=False)
+        self._orders: list[Order] = []
         self._workers = workers
         self._processes = self._started()
 
@@ -49,23 +54,29 @@ class Pool:
         if not self._processes.active:  # all of them were lost at once
             self._processes.close()
             self._processes = self._started()
-        return self._processes.schedule(_work, [order])
+        self._orders.append(order)
+        return self._processes.schedule(_work, [len(self._orders) - 1, order])
 
     def _started(self) -> WorkerProcesses:
-        return WorkerProcesses(self._workers, _begin, [self._news, self._stop])
+        return WorkerProcesses(self._workers, _begin, [self._tell, self._asked])
 
     def news(self) -> Iterator[News]:
         """Yield what the workers have told since the last time."""
-        while not self._news.empty():
-            yield self._news.get()
+        while self._news.poll():
+            number, turn, best = self._news.recv()
+            yield self._orders[number].directory, turn, best
 
     def ask_to_stop(self) -> None:
         """Let all workers stop after the turn in progress."""
-        self._stop.set()
+        if not self._stop.closed:
+            self._stop.send(None)  # nobody receives it, so everybody sees that there is something
+            self._stop.close()
 
     def close(self) -> None:
         """End the workers, whatever they are doing: what they have saved stays."""
         self._processes.close()
+        for end in (self._news, self._tell, self._asked, self._stop):
+            end.close()
 
 
 def end_of(future: Future[End]) -> End:
@@ -78,18 +89,26 @@ def end_of(future: Future[End]) -> End:
         return End("failed", "there was no process to make it: all of them were ended, or cannot be started")
 
 
-_talk: list[Talk] = []
-"""Of this process, if it is a worker: set once, before its first run."""
+_ends: list[tuple[Connection, Connection]] = []
+"""Of the pipes of this process, if it is a worker: where it tells, and where it is asked to stop."""
 
 
-def _begin(news: Any, stop: Any) -> None:
-    tell: Callable[[News], None] = news.put
-    _talk.append(Talk(tell, stop.is_set))
+def _begin(tell: Connection, asked: Connection) -> None:
+    _ends.append((tell, asked))
 
 
-def _work(order: Order) -> End:
+def _talk(number: int) -> Talk:
+    """Return how the worker talks about one of the orders.
+
+    All workers write to one pipe: a message that is so short is written whole or not at all.
+    """
+    tell, asked = _ends[0]
+    return Talk(lambda turn, best: tell.send((number, turn, best)), asked.poll)
+
+
+def _work(number: int, order: Order) -> End:
     try:
-        return End("finished" if perform(order, _talk[0]) else "stopped")
+        return End("finished" if perform(order, _talk(number)) else "stopped")
     except LockedError:
         return End("elsewhere")
     except EvoframeError as error:

@@ -9,9 +9,11 @@ from typing import Literal, TypeAlias
 
 import attrs
 
-from evoframe.errors import InputError
+from evoframe.errors import InputError, LockedError
 from evoframe.files import read_text
 from evoframe.loading import has_begun, load_run
+from evoframe.locking import held
+from evoframe.resuming import is_verified
 from evoframe.store import CONFIG_FILE, write_json
 from evoframe.study.plan import Planned
 
@@ -30,15 +32,22 @@ class Status:
     Attributes:
         state: ``missing``, ``begun``, ``failed``, ``finished``, or ``imported``: its row came from elsewhere.
         cause: Why it failed.
+        verified: Where it is finished: whether its champion was verified, or cannot be.
     """
 
     state: State
     cause: str = ""
+    verified: bool = True
 
     @property
     def is_done(self) -> bool:
         """Whether there is a row of it."""
         return self.state in ("finished", "imported")
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether nothing is left to do."""
+        return self.is_done and self.verified
 
 
 def status(planned: Planned) -> Status:
@@ -48,22 +57,34 @@ def status(planned: Planned) -> Status:
         InputError: Its directory is damaged, or holds the run of another study.
     """
     directory = planned.directory
-    failure = directory / FAILURE_FILE
-    if failure.is_file():
-        return Status("failed", _cause(failure))
+    cause = _cause(directory / FAILURE_FILE)
+    if cause is not None:
+        return Status("failed", cause)
     if not (directory / CONFIG_FILE).is_file():
         return Status("missing")
     if not has_begun(directory):
         return Status("begun")
     run = load_run(directory)
     _refuse_another(planned, run.configuration)
-    return Status("finished" if run.finished else "begun")
+    if not run.finished:
+        return Status("begun")
+    return Status("finished", verified=is_verified(run, planned.cell.config))
 
 
 def note_failure(directory: Path, cause: str) -> None:
-    """Note why a run failed, so that it is not begun again before somebody asks for that."""
+    """Note why a run failed, so that it is not begun again before somebody asks for that.
+
+    Nothing is noted where another process is at it already, nor where another one has noted its cause.
+
+    Raises:
+        InputError: The directory cannot be written.
+        RunError: The file cannot be written.
+    """
+    path = directory / FAILURE_FILE
     directory.mkdir(parents=True, exist_ok=True)
-    write_json(directory / FAILURE_FILE, {"cause": cause})
+    with contextlib.suppress(LockedError), held(directory):
+        if not path.exists():
+            write_json(path, {"cause": cause})
 
 
 def forget_failure(directory: Path) -> None:
@@ -71,10 +92,16 @@ def forget_failure(directory: Path) -> None:
     (directory / FAILURE_FILE).unlink(missing_ok=True)
 
 
-def _cause(path: Path) -> str:
-    with contextlib.suppress(ValueError, KeyError, TypeError):
+def _cause(path: Path) -> str | None:
+    """Return why a run failed; ``None`` if it has not, or another process has just begun it again."""
+    try:
         return str(json.loads(read_text(path, 1))["cause"])
-    return "unknown"
+    except InputError as error:
+        if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
+            return None
+        raise
+    except (ValueError, KeyError, TypeError):
+        return "unknown"
 
 
 def _refuse_another(planned: Planned, configuration: object) -> None:

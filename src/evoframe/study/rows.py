@@ -165,12 +165,17 @@ def _keys(rows: Iterable[Row]) -> list[str]:
     return list(dict.fromkeys(key for row in rows for key in row.settings))
 
 
+_LINE_END = "\r\n"  # what the writer looks for in a value that it must quote
+
+
 def _csv(columns: Sequence[Any], lines: Iterable[Sequence[Any]]) -> bytes:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(lines)
-    return text.getvalue().encode()
+    """Return a table whose lines end with a line feed, as ordinary tools like it."""
+    table = []
+    for line in (columns, *lines):
+        text = io.StringIO()
+        csv.writer(text, lineterminator=_LINE_END).writerow(line)
+        table.append(text.getvalue().removesuffix(_LINE_END))
+    return "\n".join([*table, ""]).encode()
 
 
 def read_rows(path: Path) -> list[Row]:

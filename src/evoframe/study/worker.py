@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+import math
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,17 +13,20 @@ import attrs
 
 from evoframe.config import RunConfig
 from evoframe.discovery import discover
+from evoframe.errors import OccupiedError
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer, Layers, layer_of
 from evoframe.observers import Observers
 from evoframe.plugins import Plugins
 from evoframe.resolve import resolved
-from evoframe.resuming import is_finished, reopen
+from evoframe.resuming import is_finished, reopen, verify_if_missing
 from evoframe.run import Execution, prepare
 from evoframe.store import CONFIG_FILE
 from evoframe.values import Turn
 
 __all__ = ["Order", "Talk", "perform"]
+
+_INTERVAL = 0.25  # s, between two things that are told of a run
 
 
 @attrs.frozen
@@ -42,40 +48,45 @@ class Order:
 
 @attrs.frozen
 class Talk:
-    """How a process of a study and the one that started it talk; both fields work across processes.
+    """How a process of a study and the one that started it talk about a run.
 
     Attributes:
-        tell: Takes a directory, the latest turn, and the best score so far.
+        tell: Takes the latest turn, and the best score since work on the run began.
         stop: Says whether to stop after the turn in progress.
     """
 
-    tell: Callable[[tuple[str, int, float | None]], None]
+    tell: Callable[[int, float | None], None]
     stop: Callable[[], bool]
 
 
 def perform(order: Order, talk: Talk) -> bool:
-    """Begin a run, or go on with it; return whether it came to its end.
+    """Begin a run, or go on with it, and verify its champion; return whether it came to its end.
 
     Raises:
-        EvoframeError: It cannot be made, or cannot go on.
+        LockedError: Another process is at it.
+        EvoframeError: It cannot be made, cannot go on, or cannot be verified.
     """
-    if (order.directory / CONFIG_FILE).exists() and is_finished(order.directory):
-        return True  # by another process, meanwhile
     plugins = discover(order.modules)
-    execution = _execution(order, plugins)
-    plugins.manager.register(_Teller(str(order.directory), talk), name="evoframe:study")
+    config = resolved(order.layers, order.label, plugins)
+    alone = _alone(config)
+    execution = _begun(order, alone, plugins)
+    if execution is None and is_finished(order.directory):
+        verify_if_missing(order.directory, alone, plugins)
+        return True
+    execution = execution or reopen(order.directory, alone, plugins)
+    plugins.manager.register(_Teller(talk), name="evoframe:study")
     completed = execution.play(Observers(plugins.manager), talk.stop)
     if completed:
         execution.verify()
     return completed
 
 
-def _execution(order: Order, plugins: Plugins) -> Execution:
-    config = resolved(order.layers, order.label, plugins)
-    alone = _alone(config)
-    if (order.directory / CONFIG_FILE).exists():
-        return reopen(order.directory, alone, plugins)
-    return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
+    """Return a new run; ``None`` if there is one already."""
+    if not (order.directory / CONFIG_FILE).exists():
+        with contextlib.suppress(OccupiedError):  # by another process, a moment ago
+            return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+    return None
 
 
 def _alone(config: RunConfig) -> list[Layer]:
@@ -87,14 +98,18 @@ def _alone(config: RunConfig) -> list[Layer]:
 
 
 class _Teller:
-    """Tells of every turn."""
+    """Tells of the turns, but not more often than anybody looks."""
 
-    def __init__(self, directory: str, talk: Talk) -> None:
-        self._directory, self._talk = directory, talk
+    def __init__(self, talk: Talk) -> None:
+        self._talk = talk
         self._best: float | None = None
+        self._told = -math.inf
 
     @hookimpl
     def evoframe_turn_finished(self, turn: Turn) -> None:
         if turn.best_pair is not None:
             self._best = turn.best_pair.score
-        self._talk.tell((self._directory, turn.index, self._best))
+        now = time.monotonic()
+        if now - self._told >= _INTERVAL:
+            self._told = now
+            self._talk.tell(turn.index, self._best)

@@ -1,0 +1,154 @@
+"""The directory of a study, which several processes share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future
+from pathlib import Path
+
+import attrs
+import pytest
+
+from evoframe import InputError
+from evoframe.study.conduct import STUDY_FILE, _Conduct, alone, claim, refuse_another, survey
+from evoframe.study.plan import Planned, Study
+from evoframe.study.pool import End, News, Pool
+from evoframe.study.progress import Status, note_failure, status
+from evoframe.study.worker import Order
+
+Read = Callable[..., Study]
+
+
+def test_what_another_process_leaves_before_it_has_claimed_a_directory_is_no_obstacle(
+    toy_study: Read, tmp_path: Path
+) -> None:
+    there = tmp_path / "there"
+    there.mkdir()
+    with alone(there):
+        (there / f".{STUDY_FILE}.new").write_text("half")
+        refuse_another(toy_study(), there)
+    claim(toy_study(), there)
+    assert (there / STUDY_FILE).is_file()
+
+
+def test_a_directory_that_is_claimed_while_one_looks_is_that_of_the_study(
+    toy_study: Read, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, there = toy_study(), tmp_path / "there"
+    there.mkdir()
+    look = Path.iterdir
+
+    def claimed_meanwhile(path: Path) -> object:
+        with monkeypatch.context() as patch:
+            patch.setattr(Path, "iterdir", look)
+            claim(study, there)
+        return look(path)
+
+    monkeypatch.setattr(Path, "iterdir", claimed_meanwhile)
+    refuse_another(study, there)
+
+
+def test_what_is_somebody_elses_stays_as_it_is(toy_study: Read, tmp_path: Path) -> None:
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "letter").touch()
+    with pytest.raises(InputError, match="is not empty, and not the directory of a study"):
+        claim(toy_study(), tmp_path / "there")
+    assert [path.name for path in (tmp_path / "there").iterdir()] == ["letter"]
+
+
+class Workers(Pool):
+    """In place of a pool: each run ends as soon as it is asked how the study goes on."""
+
+    def __init__(self, ends: Mapping[int, End]) -> None:
+        self.ends = ends
+        self.started: list[Order] = []
+        self.at_once = 0
+        self.stopping = False
+        self._running: list[Future[End]] = []
+
+    def start(self, order: Order) -> Future[End]:
+        self.started.append(order)
+        self._running.append(Future())
+        self.at_once = max(self.at_once, sum(not future.done() for future in self._running))
+        if len(self._running) % 2 == 0:  # two begin, and then both end
+            for future, number in zip(self._running[-2:], (-2, -1), strict=True):
+                future.set_result(self.ends.get(len(self._running) + number, End("finished")))
+        return self._running[-1]
+
+    def news(self) -> Iterator[News]:
+        yield self.started[-1].directory, 1, 2.5
+        yield Path("nowhere"), 1, 3.5
+
+    def ask_to_stop(self) -> None:
+        self.stopping = True
+        for future in self._running:
+            if not future.done():
+                future.set_result(End("stopped"))
+
+
+@attrs.define
+class Notes:
+    """Notes what a watcher is told."""
+
+    made: list[tuple[str, Planned]] = attrs.field(factory=list)
+    ends: list[End] = attrs.field(factory=list)
+
+    def began(self, planned: Planned) -> None:
+        self.made.append(("began", planned))
+
+    def told(self, planned: Planned, turn: int, best: float | None) -> None:
+        assert (turn, best) == (1, 2.5)
+        self.made.append(("told", planned))
+
+    def ended(self, planned: Planned, end: End) -> None:
+        self.made.append(("ended", planned))
+        self.ends.append(end)
+
+    def looked(self) -> None:
+        pass
+
+
+@pytest.fixture
+def orders(toy_study: Read, tmp_path: Path) -> dict[Planned, Order]:
+    study = toy_study("runs=1")
+    return {
+        run: Order(run.directory, study.layers_of(run), study.label, ())
+        for run in study.planned(tmp_path / "there")
+    }
+
+
+class TestWork:
+    def test_is_done_in_order_by_so_many_workers(self, orders: dict[Planned, Order]) -> None:
+        workers, notes = Workers({}), Notes()
+        _Conduct(orders, 2, notes, workers).work(lambda: False)
+        assert workers.started == list(orders.values())
+        assert workers.at_once == 2
+        assert [run for what, run in notes.made if what == "began"] == list(orders)
+        assert {run for what, run in notes.made if what == "ended"} == set(orders)
+        for run in list(orders)[1::2]:
+            assert notes.made.index(("began", run)) < notes.made.index(("told", run))
+            assert notes.made.index(("told", run)) < notes.made.index(("ended", run))
+
+    def test_that_failed_is_noted_and_the_others_go_on(self, orders: dict[Planned, Order]) -> None:
+        first, *others = orders
+        note_failure(others[0].directory, "a fault of yesterday")
+        workers, notes = Workers({0: End("failed", "a fault")}), Notes()
+        _Conduct(orders, 2, notes, workers).work(lambda: False)
+        assert status(first) == Status("failed", "a fault")
+        assert len(workers.started) == 4
+        assert {status(run).state for run in others} == {"missing"}
+
+    def test_stops_after_what_is_running(self, orders: dict[Planned, Order]) -> None:
+        workers, notes = Workers({}), Notes()
+        asked = iter([False, True, True, True])
+        _Conduct(orders, 1, notes, workers).work(lambda: next(asked))
+        assert workers.stopping
+        assert len(workers.started) == 1
+        assert notes.ends == [End("stopped")]
+
+
+def test_a_damaged_run_says_what_to_do(made: tuple[Study, Path, list[Planned]]) -> None:
+    study, directory, planned = made
+    (planned[2].directory / "run.db").write_bytes(b"x" * 4096)
+    with pytest.raises(InputError, match=r"run\.db: .*; a run whose directory is removed is made again"):
+        survey(study, directory)

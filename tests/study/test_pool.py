@@ -1,0 +1,79 @@
+"""Workers of a study: one that is lost takes no other along."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import time
+from collections.abc import Iterator
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+
+import pebble
+import pytest
+from chatter import chatter
+
+from evoframe.layers import Layers
+from evoframe.study.pool import End, Pool, end_of
+from evoframe.study.worker import Order
+
+LOST, OTHER = Path("lost"), Path("other")
+
+
+@pytest.fixture
+def pool() -> Iterator[Pool]:
+    with contextlib.closing(Pool(2)) as pool:
+        pool._orders += [Order(directory, Layers(()), "", ()) for directory in (LOST, OTHER)]
+        yield pool
+
+
+def heard(pool: Pool, about: Path) -> Iterator[int]:
+    """Yield the numbers of the processes that tell about a run."""
+    until = time.monotonic() + 30
+    while time.monotonic() < until:
+        for directory, process, _ in pool.news():
+            if directory == about:
+                yield process
+                until = time.monotonic() + 30
+    raise AssertionError(f"nothing was told about {about}")
+
+
+def test_the_others_go_on_when_one_is_killed_while_it_tells(pool: Pool) -> None:
+    other = pool._processes.schedule(chatter, [1])
+    killed: set[int] = set()
+    for _ in range(8):
+        lost = pool._processes.schedule(chatter, [0])
+        process = next(process for process in heard(pool, LOST) if process not in killed)
+        os.kill(process, signal.SIGKILL)
+        killed.add(process)
+        with pytest.raises(pebble.ProcessExpired):
+            lost.result(60)
+        for _, _ in zip(range(10_000), heard(pool, OTHER), strict=False):
+            pass  # more than was told before: a pipe holds 65,536 bytes
+    assert not other.done()
+    pool.ask_to_stop()
+    pool.ask_to_stop()
+    for _ in pool.news():
+        pass
+    other.result(60)
+
+
+def expired(code: int) -> Exception:
+    return pebble.ProcessExpired("", code)  # type: ignore[no-untyped-call]
+
+
+@pytest.mark.parametrize(
+    ("error", "cause"),
+    [
+        (expired(-signal.SIGKILL), "its process ended with the signal SIGKILL"),
+        (expired(3), "its process ended with exit code 3"),
+        (BrokenProcessPool(), "there was no process to make it"),
+    ],
+)
+def test_work_that_took_its_process_along_has_failed(error: Exception, cause: str) -> None:
+    future: Future[End] = Future()
+    future.set_exception(error)
+    assert end_of(future).state == "failed"
+    assert end_of(future).cause.startswith(cause)
