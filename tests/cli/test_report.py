@@ -50,7 +50,9 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     ]
     assert written["summary.tex"].startswith(b"\\begin{tabular}")
     assert "s: 12 of 12 runs are finished." in made.stdout
-    assert made.stdout.count("With 3 runs in the smallest group, a difference would have to be enormous") == 6
+    assert (
+        made.stdout.count("With 3 runs in the smallest group these tests, whose p-values suppose more") == 6
+    )
     again = evoframe("report", *study)
     assert again.returncode == 0
     assert contents(tmp_path / "s" / "report") == written
