@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import base64
+import hashlib
 import json
 import re
+from html import unescape
 from typing import Any
 
 import attrs
@@ -16,7 +18,7 @@ from hypothesis import strategies as st
 from plotly.graph_objects import Figure, Scatter
 
 from evoframe import Geometry, GeometryPart
-from evoframe.analysis.page import Block, Chart, Motion, Picture, Section, Source, Table, Words, page
+from evoframe.analysis.page import Block, Cell, Chart, Motion, Picture, Section, Source, Table, Words, page
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float64)
 FACES = np.array([[0, 1, 2, 3]])
@@ -44,6 +46,37 @@ def test_asks_for_nothing_from_anywhere() -> None:
     own = text[: text.index("<script>")] + text[text.rindex("<script>") :]  # but for the library's licences
     assert not re.findall(r"https?://|//cdn|@import|url\(|<link|<script src", own)
     assert "default-src 'none'" in own
+
+
+def test_no_script_may_run_but_its_own() -> None:
+    text = page("title", "lead", [Section("One", [Words("words")])]).decode()
+    [policy] = re.findall(r'Content-Security-Policy" content="([^"]+)"', text)
+    allowed = dict(rule.split(" ", 1) for rule in unescape(policy).split("; "))
+    scripts = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
+    digests = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
+    assert allowed["script-src"] == " ".join(f"'sha256-{digest}'" for digest in digests)
+    assert len(scripts) == 2
+    assert allowed["base-uri"] == allowed["form-action"] == allowed["default-src"] == "'none'"
+
+
+def test_what_can_be_scrolled_has_a_name() -> None:
+    frame = pd.DataFrame({"a": [1]})
+    text = page("t", "l", [Section("One", [Table('all "figures"', frame), Source("s.toml", "x")])]).decode()
+    names = re.findall(r'<(?:div|pre)[^>]* role="region" aria-label="([^"]+)" tabindex="0"', text)
+    assert [unescape(name) for name in names] == ['all "figures"', "s.toml"]
+    assert text[text.index("<main>") : text.index("</main>")].count("tabindex") == 2
+
+
+def test_cells_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = []
+
+    def note(value: int) -> Cell:
+        made.append(value)
+        return Cell(str(value), is_number=True)
+
+    monkeypatch.setattr("evoframe.analysis.page._cell", note)
+    page("t", "l", [Section("One", [Table("", pd.DataFrame({"a": [1, 2], "b": [3, 4], "c": [5, 6]}))])])
+    assert sorted(made) == [1, 2, 3, 4, 5, 6]
 
 
 def test_what_others_have_written_is_text() -> None:
@@ -113,7 +146,7 @@ def test_displacements_are_told_to_a_part_in_sixty_thousand(heights: list[float]
     moves = document["step"] * np.array(decoded(part["moves"], "<i2")).reshape(-1, 4, 3)
     assert decoded(part["rest"], "<f4") == SQUARE.ravel().tolist()
     largest = max(map(abs, heights))
-    assert np.abs(moves[1:, :, 2].T - heights).max() <= 0.51 * largest / 32767 + 1e-12
+    assert np.abs(moves[1:, :, 2].T - heights).max() <= max(0.51 * largest / 32767, 1e-9)
     assert not moves[..., :2].any()
 
 
@@ -124,6 +157,13 @@ def test_what_hardly_moves_is_exaggerated(height: float, exaggeration: int) -> N
     document = told(Motion("", moving(0.0, height)))
     assert document["exaggeration"] == exaggeration
     assert document["most"] == max(10, 10 * exaggeration)
+
+
+@pytest.mark.parametrize("height", [1e-10, 1e-17, 5e-324])
+def test_rounding_is_no_motion(height: float) -> None:
+    document = told(Motion("", moving(0.0, height)))
+    assert (document["exaggeration"], document["most"]) == (1, 10)
+    assert not any(decoded(document["parts"][0]["moves"], "<i2"))
 
 
 def test_the_room_that_the_body_needs_is_told() -> None:

@@ -66,7 +66,6 @@ def test_play_moves_the_body_and_pause_stops_it(run_page: Path, opened: Callable
     play.click()
     page.wait_for_function(f"(rest) => JSON.stringify({_MESHES}) !== JSON.stringify(rest)", arg=at_rest)
     pause = page.get_by_role("button", name="pause")
-    expect(pause).to_have_attribute("aria-pressed", "true")
     pause.click()
     stopped = meshes(page)
     assert stopped != at_rest
@@ -80,10 +79,10 @@ def test_play_begins_where_time_stands(run_page: Path, opened: Callable[..., Any
     moved(page)
     page.evaluate(
         """() => {
-            const output = document.querySelector(".motion .told");
+            const told = document.querySelector(".motion .told");
             window.said = [];
-            const note = () => window.said.push(output.textContent);
-            new MutationObserver(note).observe(output, { childList: true });
+            const note = () => window.said.push(told.textContent);
+            new MutationObserver(note).observe(told, { childList: true });
         }"""
     )
     for _ in range(3):
@@ -94,6 +93,34 @@ def test_play_begins_where_time_stands(run_page: Path, opened: Callable[..., Any
     said = page.evaluate("window.said")
     assert len(said) > 6
     assert all(re.fullmatch(r"0\.\d{4} s", text) for text in said)
+
+
+def test_sliders_say_time_and_exaggeration_and_nothing_speaks_by_itself(
+    run_page: Path, opened: Callable[..., Any]
+) -> None:
+    page = opened(run_page).page
+    moved(page)
+    set_slider(page, "time", 1e9)
+    set_slider(page, "exaggeration", 10)
+    expect(page.get_by_role("slider", name="time", exact=True)).to_have_attribute(
+        "aria-valuetext", "0.0705 s"
+    )
+    exaggeration = page.get_by_role("slider", name="exaggeration", exact=True)
+    expect(exaggeration).to_have_attribute("aria-valuetext", "\u00d7 10")
+    assert page.locator("output, [aria-live], [role=status]").count() == 0
+
+
+def test_scripts_of_others_do_not_run(run_page: Path, opened: Callable[..., Any]) -> None:
+    shown = opened(run_page)
+    shown.page.evaluate(
+        """() => {
+            const script = document.createElement("script");
+            script.textContent = "window.foreign = true";
+            document.body.append(script);
+        }"""
+    )
+    assert shown.page.evaluate("window.foreign") is None
+    assert any("Content Security Policy" in complaint for complaint in shown.complaints)
 
 
 def test_time_is_scrubbed_to_the_end_and_back(run_page: Path, opened: Callable[..., Any]) -> None:

@@ -12,6 +12,7 @@ from processes import Evoframe, python, started, told
 from toy_study import STUDY
 
 VERIFIED = ("verification.csv", "verification.tex")
+ALWAYS = ("report.html", "report.json")
 NAMES = [
     f"{kind}-{yardstick}-{view}"
     for kind in ("curves", "finals", "ranks")
@@ -39,7 +40,7 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     written = contents(tmp_path / "s" / "report")
     figures = {f"{name}.{ending}" for name in NAMES for ending in ("pdf", "svg", "png")}
     tables = {f"{name}.{ending}" for name in ("summary", "pairs", "ranking") for ending in ("csv", "tex")}
-    assert set(written) == {*figures, *tables, *VERIFIED, "conclusions.txt", "report.html"}
+    assert set(written) == {*figures, *tables, *VERIFIED, *ALWAYS, "conclusions.txt"}
     assert written["curves-score-n-1.pdf"].startswith(b"%PDF")
     assert written["curves-score-n-1.png"].startswith(b"\x89PNG")
     assert b"<svg" in written["curves-score-n-1.svg"]
@@ -49,10 +50,41 @@ def test_writes_figures_tables_and_words(evoframe: Evoframe, study: list[str], t
     ]
     assert written["summary.tex"].startswith(b"\\begin{tabular}")
     assert "s: 12 of 12 runs are finished." in made.stdout
-    assert made.stdout.count("With 3 runs in the smallest group, a difference would have to be enormous") == 6
+    assert (
+        made.stdout.count("With 3 runs in the smallest group these tests, whose p-values suppose more") == 6
+    )
     again = evoframe("report", *study)
     assert again.returncode == 0
     assert contents(tmp_path / "s" / "report") == written
+
+
+def test_rows_without_curves_are_compared_but_not_drawn_over_generations(
+    evoframe: Evoframe, study: list[str], tmp_path: Path
+) -> None:
+    made = tmp_path / "s"
+    for wanted, kept in (("part", "n=1"), ("all", "nothing")):
+        there = tmp_path / wanted
+        (there / "imported").mkdir(parents=True)
+        shutil.copy(made / "study.toml", there)
+        shutil.copy(made / "rows.csv", there / "imported")
+        for folder in made.glob(f"*{kept}*"):
+            shutil.copytree(folder, there / folder.name)
+    assert evoframe("report", *study[:2], "part", "all").returncode == 0
+    everything = contents(tmp_path / "part" / "report")
+    assert {f"{name}.pdf" for name in NAMES} - set(everything) == {
+        *("curves-score-n-2.pdf", "curves-fitness-n-2.pdf"),
+    }
+    drawn = [name for name in contents(tmp_path / "all" / "report") if name.startswith("curves")]
+    assert drawn == []
+
+
+def test_a_study_without_a_grid_has_one_group(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "grid.toml").write_text('extends = "toy.toml"\nruns = 2\n[grid]\n')
+    assert evoframe("study", "-p", toys.__file__, "grid.toml", "--out", "s").returncode == 0
+    made = evoframe("report", "-p", toys.__file__, "s")
+    assert made.returncode == 0, made.stderr
+    assert {"curves-score-s.pdf", "finals-fitness-s.pdf"} < set(contents(tmp_path / "s" / "report"))
 
 
 def test_of_a_study_that_is_not_finished_says_so(
@@ -93,7 +125,7 @@ def test_a_run_has_a_report_too(evoframe: Evoframe, tmp_path: Path) -> None:
     figures = ("curves", "champion-body", "champion-network-morphology", "champion-network-controller")
     assert set(written) == {
         *(f"{name}.{ending}" for name in figures for ending in ("pdf", "svg", "png")),
-        *("summary.csv", "summary.tex", "report.html"),
+        *("summary.csv", "summary.tex", *ALWAYS),
         *VERIFIED,
     }
     assert shown.stdout.startswith("r: best pair ")
@@ -122,7 +154,7 @@ def test_what_its_plugins_do_not_draw_is_left_out_and_said(evoframe: Evoframe, t
     assert evoframe("report", *plugin, "r").returncode == 0
     written = contents(tmp_path / "r" / "report")
     assert set(written) == {
-        *("curves.pdf", "curves.svg", "curves.png", "summary.csv", "summary.tex", "report.html"),
+        *("curves.pdf", "curves.svg", "curves.png", "summary.csv", "summary.tex", *ALWAYS),
     }
     assert b"Its simulator does not say what its designs look like." in written["report.html"]
 
@@ -145,6 +177,37 @@ def test_what_was_measured_of_another_champion_is_not_shown(evoframe: Evoframe, 
     assert "violins.pdf" not in report
     assert b"is of other champions" in report["report.html"]
     assert b"evoframe robustness r2 --force" in report["report.html"]
+
+
+def test_what_an_earlier_report_had_is_removed_and_nothing_else(
+    evoframe: Evoframe, study: list[str], tmp_path: Path
+) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    assert evoframe("run", *study[:2], "toy.toml", "--out", "r").returncode == 0
+    assert evoframe("report", *study[:2], "r", "--out", "afresh").returncode == 0
+    assert evoframe("report", *study, "--out", "there").returncode == 0
+    there = tmp_path / "there"
+    (there / "mine.pdf").touch()
+    (there / "ranking.csv").write_text("changed by somebody")
+    (there / "ranking.tex").unlink()
+    (there / "ranking.tex").symlink_to(there / "mine.pdf")
+    assert evoframe("report", *study[:2], "r", "--out", "there").returncode == 0
+    found, wanted = contents(there), contents(tmp_path / "afresh")
+    assert {name: found[name] for name in wanted} == wanted
+    assert set(found) - set(wanted) == {"mine.pdf", "ranking.csv", "ranking.tex"}
+
+
+def test_a_list_of_something_else_is_refused_before_anything_is_written(
+    evoframe: Evoframe, tmp_path: Path
+) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    assert evoframe("run", "-p", toys.__file__, "toy.toml", "--out", "r").returncode == 0
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "report.json").write_text("{}")
+    refused = evoframe("report", "-p", toys.__file__, "r", "--out", "there")
+    assert refused.returncode == 2
+    assert "there/report.json: is no list of a report's files; remove it, or choose" in refused.stderr
+    assert contents(tmp_path / "there") == {"report.json": b"{}"}
 
 
 def test_names_are_shown_as_they_are(evoframe: Evoframe, tmp_path: Path) -> None:

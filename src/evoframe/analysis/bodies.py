@@ -14,11 +14,11 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
 from evoframe.analysis.plain import plain
+from evoframe.analysis.printed import COLUMN
 from evoframe.drawings import Geometry, GeometryPart
 
 __all__ = ["body"]
 
-_WIDTH = 3.5  # inches: a column of an article
 _BESIDE, _ABOVE, _BELOW, _TALLEST = 0.12, 0.40, 0.30, 2.0  # inches: of margins, and of the body itself
 _ELEVATION, _AZIMUTH = 24.0, -62.0  # degrees; the free end, at the greatest x, is in front
 _LIGHT = np.array([0.30, -0.65, 0.70])  # from the front, above
@@ -33,7 +33,7 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
         title: What stands above it.
         frame: Which of its times.
     """
-    figure = Figure(figsize=(_WIDTH, _WIDTH))
+    figure = Figure(figsize=(COLUMN, COLUMN))
     axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     corners = [part.vertices[frame][part.faces] for part in geometry.parts]
     colours = [_shaded(part, faces) for part, faces in zip(geometry.parts, corners, strict=True)]
@@ -104,11 +104,11 @@ def _fit(figure: Figure, axes: Any, points: NDArray[np.float64]) -> None:
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
     shown = axes.transAxes.inverted().transform(axes.transData.transform(np.column_stack([x, y])))
     (left, low), (right, high) = shown.min(axis=0), shown.max(axis=0)
-    side = min((_WIDTH - 2 * _BESIDE) / (right - left), _TALLEST / (high - low))  # of the square of all axes
+    side = min((COLUMN - 2 * _BESIDE) / (right - left), _TALLEST / (high - low))  # of the square of all axes
     height = _ABOVE + side * (high - low) + _BELOW
     figure.set_figheight(height)
-    corner = 0.5 * (_WIDTH - side * (left + right)) / _WIDTH, (_BELOW - side * low) / height
-    axes.set_position((*corner, side / _WIDTH, side / height))
+    corner = 0.5 * (COLUMN - side * (left + right)) / COLUMN, (_BELOW - side * low) / height
+    axes.set_position((*corner, side / COLUMN, side / height))
 
 
 def _legend(figure: Figure, parts: Sequence[GeometryPart]) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import attrs
 
+from evoframe.analysis.geometries import checked
 from evoframe.blame import blaming
 from evoframe.config import RunConfig
 from evoframe.drawings import Geometry, NetworkGraph, can_be_drawn
@@ -67,6 +67,7 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
         InputError: It is no run's directory, has no champion yet, or is damaged.
+        ComponentError: What its simulator or an evolver gives cannot be drawn.
     """
     job = read_job(directory, None, (), plugins, runs=True)
     run, [design], config = job.run, job.designs, job.config
@@ -74,7 +75,7 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
         raise InputError(f"{directory}: is no run's directory")
     simulator, objective = config.simulator.component, config.objective.component
     with naming(directory), blaming("simulator"):
-        geometry = _checked(simulator.geometry(design, _FRAMES)) if can_be_drawn(simulator) else None
+        geometry = checked(simulator.geometry(design, _FRAMES)) if can_be_drawn(simulator) else None
     drawn = geometry.tracks if geometry else {}
     return ChampionData(
         score=run.champion.score,
@@ -84,20 +85,6 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
         networks=tuple(_networks(run, config)),
         verification=run.verification,
     )
-
-
-def _checked(geometry: Any) -> Geometry:
-    """Return what a simulator gave if it can be drawn.
-
-    Raises:
-        TypeError: It is something else.
-        ValueError: There is nothing to see.
-    """
-    if not isinstance(geometry, Geometry):
-        raise TypeError(f"geometry() gave {type(geometry).__name__}, expected a Geometry")
-    if not any(len(part.faces) for part in geometry.parts):
-        raise ValueError("geometry() gave nothing that can be seen")
-    return geometry
 
 
 def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:

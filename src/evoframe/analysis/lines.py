@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +12,12 @@ from scipy import stats
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, factor_of
 from evoframe.loading import Run
-from evoframe.study.rows import score_curve
+from evoframe.study.rows import Row, score_curve
 
 __all__ = ["Line", "lines_of_run", "lines_of_view"]
 
 _RESAMPLES = 2000
+_BATCH = 100  # of them at a time: all would need gigabytes for many runs, and give the same
 _BLACK, _DOTTED = 6, 2
 
 Floats = NDArray[np.float64]
@@ -42,6 +45,9 @@ class Line:
 def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line]:
     """Return the mean over the runs of each group, with its 95 % band (bootstrap over runs).
 
+    Imported rows may have no curves: they do not count, and a group of nothing else has no line. Where the
+    runs of a group are of different lengths, its line ends with the shortest: means of fewer would jump.
+
     Args:
         view: The groups.
         yardstick: What is drawn.
@@ -49,9 +55,10 @@ def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line
     """
     drawn = []
     for number, (name, rows) in enumerate(view.groups.items()):
-        curves = np.array([getattr(row, f"{yardstick}_curve") for row in rows]) * factor_of(unit)
-        band = _band(curves) if len(rows) > 1 else None
-        drawn.append(Line(f"{name}: {len(rows)}", curves.mean(axis=0), number, number, band))
+        curves = _curves(rows, yardstick) * factor_of(unit)
+        if curves.size:
+            band = _band(curves) if len(curves) > 1 else None
+            drawn.append(Line(f"{name}: {len(curves)}", curves.mean(axis=0), number, number, band))
     return drawn
 
 
@@ -74,11 +81,32 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
     return [*drawn, Line(NAMES["score"], score, _BLACK, _DOTTED)]  # on top: the best fitness is hardly less
 
 
+def _curves(rows: Sequence[Row], yardstick: Yardstick) -> Floats:
+    """Return the curves of rows that have one, as far as all go: ``float64[rows, generations]``."""
+    found = [curve for row in rows if (curve := getattr(row, f"{yardstick}_curve"))]
+    length = min(map(len, found), default=0)
+    return np.array([curve[:length] for curve in found], dtype=np.float64)
+
+
 def _band(curves: Floats) -> tuple[Floats, Floats]:
-    """Return the 95 % interval of the mean of each column."""
+    """Return the 95 % interval of the mean of each column; a gap where a run has no value."""
+    low, high = np.full((2, curves.shape[1]), np.nan)
+    known = np.isfinite(curves).all(axis=0)
+    if known.any():
+        low[known], high[known] = _interval(curves[:, known])
+    return low, high
+
+
+def _interval(curves: Floats) -> tuple[Floats, Floats]:
     if np.ptp(curves, axis=0).max() == 0:
         return curves[0], curves[0]
     found = stats.bootstrap(
-        (curves,), np.mean, axis=0, n_resamples=_RESAMPLES, method="percentile", rng=np.random.default_rng(0)
+        (curves,),
+        np.mean,
+        axis=0,
+        n_resamples=_RESAMPLES,
+        batch=_BATCH,
+        method="percentile",
+        rng=np.random.default_rng(0),
     )
     return found.confidence_interval.low, found.confidence_interval.high

@@ -9,27 +9,23 @@ from typing import Any
 import attrs
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from matplotlib.path import Path
-from matplotlib.textpath import text_to_path
 
 from evoframe.analysis.layered import Layout, effective, layered
 from evoframe.analysis.plain import plain
+from evoframe.analysis.printed import BOTH_COLUMNS, COLOURS, COLUMN, text_width
 from evoframe.drawings import NetworkGraph, NetworkLink
 
 __all__ = ["TooLargeError", "network"]
 
-POSITIVE, NEGATIVE = "#0072B2", "#D55E00"  # of Okabe and Ito, as in the figures of a study
+POSITIVE, NEGATIVE = COLOURS[:2]
 INK, GREY, PALE = "#202020", "#606060", "#B0B0B0"
 DASHES = (0, (4, 1.5))
 
 # Inches, but for sizes of fonts and widths of lines, which are points.
-_WIDTHS = {
-    3.5: 0.3,
-    7.0: 0.18,
-}  # a column of an article, and its text; the least gap between columns of nodes
+_WIDTHS = {COLUMN: 0.3, BOTH_COLUMNS: 0.18}  # with the least gap between columns of nodes
 _ROW, _LINE, _PAD, _MARGIN = 0.31, 0.1, 0.05, 0.05
 _LANE = 0.3  # above the network, for links that go back
 _TITLE, _NOTE, _LEGEND = 0.17, 0.13, 0.16  # heights of lines
@@ -74,10 +70,10 @@ def network(
     layout = layered(drawn)
     labels = {**dict(sorted(drawn.labels.items())), **dict(zip(graph.inputs, input_names, strict=True))}
     wrapped = {node: _wrapped(label) for node, label in labels.items()}
-    page = _page(layout, wrapped, output_names)
+    sheet = _sheet(layout, wrapped, output_names)
     legend = _legend(drawn.links)
-    figure, axes = _figure(page, textwrap.wrap(title, int(13 * page.width)), _note(graph, drawn), legend)
-    drawing = _Drawing(axes, page, drawn, layout, wrapped)
+    figure, axes = _figure(sheet, textwrap.wrap(title, int(13 * sheet.width)), _note(graph, drawn), legend)
+    drawing = _Drawing(axes, sheet, drawn, layout, wrapped)
     drawing.nodes()
     drawing.links()
     drawing.names(output_names)
@@ -93,7 +89,7 @@ def _names(what: str, nodes: Sequence[int], names: Sequence[str]) -> Sequence[st
 
 
 @attrs.frozen
-class _Page:
+class _Sheet:
     """Where things are on paper, in inches from the upper left corner of the network.
 
     Attributes:
@@ -114,7 +110,7 @@ class _Drawing:
     """A network that is put on paper."""
 
     axes: Axes
-    page: _Page
+    sheet: _Sheet
     graph: NetworkGraph
     layout: Layout
     labels: Mapping[int, str]
@@ -163,7 +159,7 @@ class _Drawing:
 
     def names(self, output_names: Iterable[str]) -> None:
         """Write the name of each output at its right, or below it where links go on."""
-        last = len(self.page.columns) - 1
+        last = len(self.sheet.columns) - 1
         for node, name in zip(self.graph.outputs, output_names, strict=True):
             left, right = self._edges(node)
             if self.layout.columns[node] == last:
@@ -173,7 +169,7 @@ class _Drawing:
 
     def _edges(self, node: int) -> tuple[float, float]:
         """Return the left and right edge of a node's box."""
-        left, right = self.page.columns[self.layout.columns[node]]
+        left, right = self.sheet.columns[self.layout.columns[node]]
         half = _box_width(self.labels[node]) / 2
         return (left + right) / 2 - half, (left + right) / 2 + half
 
@@ -185,7 +181,7 @@ class _Drawing:
         first, y = self.layout.columns[link.start], route[0] * _ROW
         vertices, codes = [(self._edges(link.start)[1], y)], [Path.MOVETO]
         for column, height in enumerate(route[1:], start=first):
-            right, left = self.page.columns[column][1], self.page.columns[column + 1][0]
+            right, left = self.sheet.columns[column][1], self.sheet.columns[column + 1][0]
             middle, below = (right + left) / 2, height * _ROW
             vertices += [(right, y), (middle, y), (middle, below), (left, below)]
             codes += [Path.LINETO, Path.CURVE4, Path.CURVE4, Path.CURVE4]
@@ -195,7 +191,7 @@ class _Drawing:
     def _return(self, link: NetworkLink, route: Sequence[float]) -> Path:
         """Return a curve from the right of a node over the network to the left of another."""
         right, left = self._edges(link.start)[1], self._edges(link.end)[0] - 0.01
-        above = [(right + _LANE, self.page.top), (left - _LANE, self.page.top)]
+        above = [(right + _LANE, self.sheet.top), (left - _LANE, self.sheet.top)]
         codes = [Path.MOVETO, *[Path.CURVE4] * 3]
         return Path([(right, route[0] * _ROW), *above, (left, route[-1] * _ROW)], codes)
 
@@ -230,17 +226,14 @@ def _wrapped(label: str) -> str:
 
 
 def _text_width(text: str) -> float:
-    """Return the width of the longest line, in inches."""
-    font = FontProperties(size=_SIZE, weight="bold")  # the widest that is written
-    lines = text.split("\n")
-    return max(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0] for line in lines) / 72
+    return text_width(text, _SIZE, "bold")  # the widest that is written
 
 
 def _box_width(label: str) -> float:
     return max(2 * _LINE, _text_width(label) + 2 * _PAD)
 
 
-def _page(layout: Layout, labels: Mapping[int, str], output_names: Iterable[str]) -> _Page:
+def _sheet(layout: Layout, labels: Mapping[int, str], output_names: Iterable[str]) -> _Sheet:
     widths = [0.0] * (1 + max(layout.columns.values()))
     for node, column in layout.columns.items():
         widths[column] = max(widths[column], _box_width(labels[node]))
@@ -251,18 +244,18 @@ def _page(layout: Layout, labels: Mapping[int, str], output_names: Iterable[str]
     gap = (width - needed) / gaps
     lefts = [_MARGIN + sum(widths[:number]) + gap * number for number in range(len(widths))]
     columns = [(left, left + column) for left, column in zip(lefts, widths, strict=True)]
-    return _Page(width, -_LANE if layout.returns else 0.0, layout.rows * _ROW, columns)
+    return _Sheet(width, -_LANE if layout.returns else 0.0, layout.rows * _ROW, columns)
 
 
-def _figure(page: _Page, title: Sequence[str], note: str, legend: Sequence[Line2D]) -> tuple[Figure, Axes]:
+def _figure(sheet: _Sheet, title: Sequence[str], note: str, legend: Sequence[Line2D]) -> tuple[Figure, Axes]:
     """Return a figure whose axes are in inches, downwards, with its words above and below."""
-    n_columns = 2 if page.width == min(_WIDTHS) else 4
+    n_columns = 2 if sheet.width == min(_WIDTHS) else 4
     above = _MARGIN + _TITLE * len(title) + _NOTE * bool(note) + _MARGIN
     below = _MARGIN + _LEGEND * -(-len(legend) // n_columns) + _MARGIN
-    height = above + page.bottom - page.top + below
-    figure = Figure(figsize=(page.width, height))
-    axes = figure.add_axes((0, below / height, 1, (page.bottom - page.top) / height), frameon=False)
-    axes.set(xlim=(0, page.width), ylim=(page.bottom, page.top), xticks=[], yticks=[])
+    height = above + sheet.bottom - sheet.top + below
+    figure = Figure(figsize=(sheet.width, height))
+    axes = figure.add_axes((0, below / height, 1, (sheet.bottom - sheet.top) / height), frameon=False)
+    axes.set(xlim=(0, sheet.width), ylim=(sheet.bottom, sheet.top), xticks=[], yticks=[])
     axes.set_title("\n".join(title), size=9, pad=72 * (_MARGIN + _NOTE * bool(note)))
     figure.text(0.5, (height - above + _MARGIN) / height, note, ha="center", size=7, color=GREY)
     if legend:

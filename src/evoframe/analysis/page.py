@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import functools
+import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -28,6 +29,7 @@ __all__ = ["Block", "Chart", "Motion", "Picture", "Section", "Source", "Table", 
 _QUANTA = 32767  # displacements are told as 16-bit numbers
 _NOTICEABLE = 0.15  # of the body's extent: how far the exaggeration moves it at first
 _MOST = 10.0  # times that
+_STILL = 1e-9  # of the extent: smaller displacements are rounding, and no motion
 
 
 @attrs.frozen
@@ -100,7 +102,7 @@ class Table:
         """The names of its columns."""
         return [str(column) for column in self.frame.columns]
 
-    @property
+    @functools.cached_property
     def rows(self) -> list[list[Cell]]:
         """Its cells."""
         return [[_cell(value) for value in row] for row in self.frame.itertuples(index=False)]
@@ -154,14 +156,15 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
     full = [attrs.evolve(section, blocks=[*filter(_has_content, section.blocks)]) for section in sections]
     shown = [section for section in full if section.blocks]
     anchors = slugs(section.title.lower() for section in shown)
+    scripts = [get_plotlyjs(), _file("page.js")]
     text = _template().render(
         title=title,
         lead=lead,
         sections=list(zip(anchors, shown, strict=True)),
         version=__version__,
         style=_file("page.css"),
-        script=_file("page.js"),
-        plotly=get_plotlyjs(),
+        scripts=scripts,
+        hashes=[*map(_hash, scripts)],
     )
     return text.encode()
 
@@ -178,6 +181,11 @@ def _template() -> jinja2.Template:
 
 def _file(name: str) -> str:
     return (resources.files("evoframe.analysis") / "templates" / name).read_text(encoding="utf-8")
+
+
+def _hash(script: str) -> str:
+    """Return how a page's content security policy names a script that may run: no other may."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
 
 
 def _in_script(document: Mapping[str, Any]) -> str:
@@ -205,6 +213,8 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
     points = None if track is None else geometry.tracks[track]
     largest = max(float(np.abs(moved).max()) for moved in moves)
     extent = max(float(np.ptp(part.vertices[0], axis=0).max()) for part in geometry.parts)
+    if largest <= _STILL * extent:
+        moves, largest = [np.zeros_like(moved) for moved in moves], 0.0
     exaggeration = _round(_NOTICEABLE * extent / largest) if largest else 1
     step = largest / _QUANTA or 1.0
     return {

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import attrs
+
 from evoframe.analysis.corrections import Correction
+from evoframe.analysis.listing import listed, settle
 from evoframe.analysis.run_report import write_run_report
 from evoframe.analysis.study_report import write_study_report
 from evoframe.analysis.writing import Written
@@ -21,6 +24,8 @@ __all__ = ["write_report"]
 def write_report(directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm") -> Written:
     """Write the report of a run or a study.
 
+    Files of an earlier report in its place that it does not have any more are removed.
+
     Args:
         directory: Of a run or a study, finished or not.
         target: Where to.
@@ -34,6 +39,12 @@ def write_report(directory: Path, target: Path, plugins: Plugins, correction: Co
         RunError: The report cannot be written.
     """
     _refuse_occupied(target)
+    before = listed(target)
+    written = _write(directory, target, plugins, correction)
+    return attrs.evolve(written, files=(*written.files, settle(target, before, written.files)))
+
+
+def _write(directory: Path, target: Path, plugins: Plugins, correction: Correction) -> Written:
     if is_file(directory / STUDY_FILE):
         return write_study_report(directory, target, plugins, correction)
     if is_file(directory / CONFIG_FILE):

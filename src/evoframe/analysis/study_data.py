@@ -36,7 +36,7 @@ class StudyData:
 
     Attributes:
         label: What a person calls it.
-        keys: The keys of the grid. The last one is that whose values are compared.
+        keys: The keys of the grid, perhaps none. The last one is that whose values are compared.
         unit: Of the scores.
         planned: How many runs there shall be.
         rows: Of the finished ones, in the order of work.
@@ -85,8 +85,11 @@ class StudyData:
         """Return what is compared: the values of the last key, in a view for each combination of the others.
 
         Where there are several, one more view compares the best of each: those with the greatest mean on the
-        *yardstick*. Their names say where they come from, as in ``WM (n = 2)``.
+        *yardstick*. Their names say where they come from, as in ``WM (n = 2)``. A study whose grid is empty
+        has one view of one group, ``all``.
         """
+        if not self.keys:
+            return [View(self.label, "group", {"all": self.rows})]
         found: dict[tuple[str, ...], dict[str, list[Row]]] = {}
         for row in self.rows:
             groups = found.setdefault(tuple(row.settings[key] for key in self.keys[:-1]), {})

@@ -91,7 +91,7 @@ class _Shown:
     Attributes:
         view: The groups.
         yardstick: What they are compared by.
-        lines: What figures and charts draw of them.
+        lines: What figures and charts draw of them; none if no run has a curve.
         comparison: Of the groups, if there is more than one.
     """
 
@@ -115,8 +115,9 @@ def _figures(unit: str, all_shown: Sequence[_Shown], directory: Path) -> list[Pa
     for shown, name in zip(all_shown, names, strict=True):
         view, yardstick, comparison = shown.view, shown.yardstick, shown.comparison
         title = f"{view.title}, {NAMES[yardstick]}"
-        curves = curves_of(shown.lines, view, yardstick, unit)
-        written += write_figure(curves, directory / f"curves-{name}")
+        if shown.lines:
+            curves = curves_of(shown.lines, view, yardstick, unit)
+            written += write_figure(curves, directory / f"curves-{name}")
         written += write_figure(finals(view, yardstick, unit, comparison), directory / f"finals-{name}")
         if comparison is not None:
             written += write_figure(ranks(comparison, title), directory / f"ranks-{name}")
@@ -143,9 +144,9 @@ def _compared_sections(unit: str, all_shown: Sequence[_Shown], rankings: pd.Data
         blocks = by_title.setdefault(view.title, [])
         if shown.comparison is not None:
             blocks.append(Words(f"{shown.comparison.ranking}: {conclusion(shown.comparison, f'the {name}')}"))
-        plot = lines_chart(shown.lines, axis_title(name, unit))
-        over_runs = "mean over runs, with 95 % bands (bootstrap)" if _many(view) else "mean over runs"
-        blocks.append(Chart(f"The {name} in each generation: {over_runs}.", plot))
+        if shown.lines:
+            plot = lines_chart(shown.lines, axis_title(name, unit))
+            blocks.append(Chart(f"The {name} in each generation: {_over_runs(shown.lines)}.", plot))
         plot = finals_chart(view, shown.yardstick, unit)
         blocks.append(Chart(f"The {name} of every run in the end.", plot))
     summary = [Table("Rankings in the paper's notation: = is not found to differ.", rankings)]
@@ -153,8 +154,9 @@ def _compared_sections(unit: str, all_shown: Sequence[_Shown], rankings: pd.Data
     return [Section("Rankings", summary if len(rankings) else []), *sections]
 
 
-def _many(view: View) -> bool:
-    return all(len(rows) > 1 for rows in view.groups.values())
+def _over_runs(lines: Sequence[Line]) -> str:
+    banded = all(line.band is not None for line in lines)
+    return "mean over runs, with 95 % bands (bootstrap)" if banded else "mean over runs"
 
 
 def _sources(data: StudyData) -> Iterator[Block]:

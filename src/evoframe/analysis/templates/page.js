@@ -1,8 +1,8 @@
 "use strict";
 (() => {
   const COLOURS = {
-    light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b07800", "#3a8fc4", "#444444", "#8a6d00"],
-    dark: ["#66b7e8", "#ff9a52", "#3fd0a4", "#eba6cc", "#f2bd45", "#9fd6f5", "#dddddd", "#e8dc5a"],
+    light: ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b07800", "#3a8fc4", "#444444"],
+    dark: ["#66b7e8", "#ff9a52", "#3fd0a4", "#eba6cc", "#f2bd45", "#9fd6f5", "#dddddd"],
   };
   const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["toImage"] };
   const SECONDS = 4; // of a playback, whatever time was simulated
@@ -152,10 +152,12 @@
       ranges().forEach((range, axis) => { scene[`${"xyz"[axis]}axis`] = { range, title: { text: `${"xyz"[axis]} (m)` }, nticks: 5 }; });
       return themed({ scene, margin: { l: 0, r: 0, t: 0, b: 0 }, legend: { orientation: "h", y: 0 }, uirevision: "kept" });
     };
+    // Its value is the number of a frame, which nobody wants to hear.
+    const say = (slider, beside, text) => { beside.textContent = text; slider.setAttribute("aria-valuetext", text); };
     const tell = () => {
       time.value = frame;
-      find(".told").textContent = `${along(given.times, frame).toFixed(4)} s`;
-      find(".times").textContent = `× ${scale}`;
+      say(time, find(".told"), `${along(given.times, frame).toFixed(4)} s`);
+      say(exaggeration, find(".times"), `× ${scale}`);
     };
     const now = () => {
       const at = along(given.times, frame);
@@ -182,7 +184,7 @@
       if (track) Plotly.relayout(chart, { shapes: now() });
       tell();
     };
-    const stop = () => { cancelAnimationFrame(playing); playing = 0; play.textContent = "play"; play.setAttribute("aria-pressed", "false"); };
+    const stop = () => { cancelAnimationFrame(playing); playing = 0; play.textContent = "play"; };
     const start = () => {
       let before; // the moment of the first picture, which may be before now
       const advance = (moment) => {
@@ -194,7 +196,6 @@
       };
       playing = requestAnimationFrame(advance);
       play.textContent = "pause";
-      play.setAttribute("aria-pressed", "true");
     };
 
     time.max = last;
