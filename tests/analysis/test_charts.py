@@ -38,10 +38,20 @@ def test_what_is_missing_is_a_gap() -> None:
 
 
 def test_every_run_has_a_point_in_millimetres() -> None:
-    view = View("n = 2", "aggregator", {"AM": [row(0, 0.005), row(1, 0.0051)], "WM": [row(0, 0.006)]})
-    first, second = finals_chart(view, "score", "m").data
-    assert (first.name, list(first.y), first.boxpoints) == ("AM: 2", [5.0, 5.1], "all")
-    assert (second.name, list(second.y)) == ("WM: 1", [6.0])
+    many = [0.005, 0.0051, 0.0053, 0.0052, 0.009, 0.0054]
+    groups = {"AM": [row(*numbered) for numbered in enumerate(many)], "WM": [row(0, 0.006)]}
+    box, points = finals_chart(View("n = 2", "aggregator", groups), "score", "m").data
+    assert (box.name, box.type, box.boxpoints) == ("AM: 6", "box", "all")
+    assert list(box.y[0]) == pytest.approx([5.0, 5.1, 5.3, 5.2, 9.0, 5.4])
+    quartiles = np.quantile(1000 * np.array(many), [0.25, 0.5, 0.75])  # those of tables and figures
+    assert [box.q1[0], box.median[0], box.q3[0]] == pytest.approx(quartiles)
+    assert (box.lowerfence[0], box.upperfence[0]) == pytest.approx((5.0, 5.4))
+    assert (points.name, points.type, list(points.y)) == ("WM: 1", "scatter", [6.0])
+
+
+def test_generations_are_whole_numbers() -> None:
+    short, long = (lines_chart([Line("a", np.ones(n), 0, 0)], "").layout.xaxis.dtick for n in (4, 40))
+    assert (short, long) == (1, None)
 
 
 def test_the_lines_of_a_run_are_those_of_its_record(tmp_path: Path) -> None:

@@ -52,7 +52,7 @@ def test_lines_of_different_lengths_are_drawn_each_as_far_as_all_its_runs_go() -
 
 
 def test_where_a_run_has_no_score_yet_there_is_a_gap() -> None:
-    there = view(AM=[(math.nan, 1.0, 2.0), (1.0, 1.5, 3.0)], WM=[(math.nan,) * 3] * 2)
+    there = view(AM=[(math.nan, 1.0, 2.0), (1.0, 1.5, 3.0)] * 3, WM=[(math.nan,) * 3] * 5)
     line, nothing = lines_of_view(there, "score")
     assert line.band is not None
     for values in (line.values, *line.band):
@@ -60,6 +60,14 @@ def test_where_a_run_has_no_score_yet_there_is_a_gap() -> None:
     assert np.isnan(nothing.values).all()
     curves(there, "score").draw_without_rendering()
     assert lines_chart([line], "").data[0].y[0] is None
+
+
+def test_a_few_runs_have_no_band() -> None:
+    four, five = lines_of_view(
+        view(AM=[(1.0, 2.0), (2.0, 3.0)] * 2, WM=[(1.0, float(n)) for n in range(5)]), "score"
+    )
+    assert four.band is None
+    assert five.band is not None
 
 
 def test_bands_are_those_of_all_resamples_at_once() -> None:

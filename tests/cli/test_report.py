@@ -247,6 +247,34 @@ def test_a_finished_run_without_its_champion_is_named(
     refused = evoframe("report", *study)
     assert refused.returncode == 2
     assert "champion.json: cannot be read: No such file or directory" in refused.stderr
+    assert "a run whose directory is removed is made again" in refused.stderr
+
+
+def test_a_study_of_one_group_is_described(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "one.toml").write_text('extends = "toy.toml"\nruns = 2\n[grid]\n"collaboration.n" = [1]\n')
+    plugin = ("-p", toys.__file__)
+    assert evoframe("study", *plugin, "one.toml", "--out", "s").returncode == 0
+    shown = evoframe("report", *plugin, "s")
+    assert shown.returncode == 0, shown.stderr
+    assert "1 is the only group, so there is nothing that it could be compared with." in shown.stdout
+    summary = list(csv.DictReader((tmp_path / "s" / "report" / "summary.csv").read_text().splitlines()))
+    assert [(row["group"], row["runs"], row["yardstick"]) for row in summary] == [
+        ("1", "2", "score"), ("1", "2", "fitness"),
+    ]  # fmt: skip
+    assert (tmp_path / "s" / "report" / "pairs.csv").read_text().startswith("view,yardstick,first,second")
+
+
+def test_scores_of_another_kind_are_said_to_be(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "two.toml").write_text(
+        'extends = "toy.toml"\nruns = 1\n[grid]\n'
+        'simulator = ["toy-product", {name = "toy-varied", gain = 2.0}]\n'
+    )
+    plugin = ("-p", toys.__file__)
+    assert evoframe("study", *plugin, "two.toml", "--out", "s").returncode == 0
+    told = evoframe("report", *plugin, "s").stdout
+    assert "The configurations do not all simulate and score in one way" in told
 
 
 def test_several_reports_are_written_each_in_its_place(evoframe: Evoframe, tmp_path: Path) -> None:

@@ -7,15 +7,18 @@ from collections.abc import Sequence
 from html import escape
 
 import numpy as np
+from matplotlib.cbook import boxplot_stats
 from numpy.typing import NDArray
 from plotly.graph_objects import Box, Figure, Scatter
 
 from evoframe.analysis.lines import Line
+from evoframe.analysis.statistics import FEWEST
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, axis_title, factor_of
 
 __all__ = ["finals_chart", "lines_chart"]
 
+_FEW = 10  # generations
 _DASHES = ("solid", "dash", "dot", "dashdot")
 
 
@@ -58,7 +61,10 @@ def lines_chart(drawn: Sequence[Line], label: str) -> Figure:
                 meta=colour,
             )
         )
-    return _arranged(Figure(traces), "generation", label)
+    plot = _arranged(Figure(traces), "generation", label)
+    if max((len(line.values) for line in drawn), default=0) <= _FEW:
+        plot.update_xaxes(dtick=1)  # else there are halves of generations
+    return plot
 
 
 def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
@@ -69,20 +75,27 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
         yardstick: What is drawn.
         unit: Of scores; metres are shown as millimetres.
     """
-    traces = [
-        Box(
-            y=_told(np.array(values) * factor_of(unit)),
-            name=escape(f"{name}: {len(values)}", quote=False),
-            boxpoints="all",
-            jitter=0.5,
-            pointpos=-1.6,
-            marker_size=4,
-            meta={"colour": number},
-        )
-        for number, (name, values) in enumerate(view.values(yardstick).items())
-    ]
+    traces = []
+    for number, (name, values) in enumerate(view.values(yardstick).items()):
+        scaled, called = np.array(values) * factor_of(unit), escape(f"{name}: {len(values)}", quote=False)
+        trace = _box(scaled, called) if len(values) >= FEWEST else _points(scaled, called)
+        traces.append(trace.update(meta={"colour": number}))
     plot = _arranged(Figure(traces), f"{view.key}: runs", axis_title(NAMES[yardstick], unit))
+    plot.update_xaxes(range=[-0.5, len(traces) - 0.5])  # points alone would lie at the edges
     return plot.update_layout(showlegend=False, hovermode="closest")
+
+
+def _box(values: NDArray[np.float64], name: str) -> Box:
+    """Return the box that figures have, for plotly reckons quartiles otherwise."""
+    [box] = boxplot_stats(values)
+    shown = {"q1": "q1", "median": "med", "q3": "q3", "lowerfence": "whislo", "upperfence": "whishi"}
+    own = {key: _told(np.array([box[other]])) for key, other in shown.items()}
+    points = {"boxpoints": "all", "jitter": 0.5, "pointpos": -1.6, "marker_size": 4}
+    return Box(x=[name], y=[_told(values)], name=name, **points, **own)
+
+
+def _points(values: NDArray[np.float64], name: str) -> Scatter:
+    return Scatter(x=[name] * len(values), y=_told(values), name=name, mode="markers", marker_size=6)
 
 
 def _arranged(plot: Figure, x: str, y: str) -> Figure:

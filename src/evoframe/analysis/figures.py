@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.plain import plain
 from evoframe.analysis.printed import COLOURS, COLUMN, DASHES, broken, row_height, text_width
-from evoframe.analysis.statistics import Comparison
+from evoframe.analysis.statistics import FEWEST, Comparison
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, axis_title, factor_of
 
@@ -32,7 +32,6 @@ _GAP = 0.03  # inches, between a line and its label
 _HANDLE, _APART = 0.28, 0.2  # inches: what stands before a name in a legend, and between two columns of it
 _MOST = 4  # columns of a legend
 _LINE = 0.13  # inches, of a legend
-_FEWEST = 5  # values of which a box tells something
 
 
 def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
@@ -83,6 +82,7 @@ def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = No
         if line.band is not None:
             axes.fill_between(generations, *line.band, color=style["color"], alpha=0.18, lw=0)
     axes.set(xlabel="generation", ylabel=label)
+    axes.locator_params(axis="x", integer=True)
     axes.margins(x=0)
     figure.legend(
         title=below or None,
@@ -138,7 +138,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     rng = np.random.default_rng(0)  # of the places of points, nothing else
     for place, values in enumerate(groups.values()):
         scaled = np.array(values) * factor_of(unit)
-        boxed = len(values) >= _FEWEST
+        boxed = len(values) >= FEWEST
         beside = place - (0.2 if boxed else 0.0) + rng.uniform(-0.1, 0.1, len(values))
         colour = COLOURS[place % len(COLOURS)]
         axes.plot(scaled, beside, "o", color=colour, ms=3, mew=0, alpha=0.6)
@@ -165,7 +165,7 @@ def ranks(comparison: Comparison, title: str) -> Figure:
     """
     names = [group.name for group in comparison.groups]
     labels = [broken(f"{group.name}: {group.mean_rank:.3g}", _RANKED, _SIZE) for group in comparison.groups]
-    figure, axes = _figure(f"{title}: mean rank", 0.5)
+    figure, axes = _figure(f"{title}: mean rank, more is better", 0.5)
     numbers = range(len(names))  # the picture would depend on the hashes of names
     p = pd.DataFrame(
         [[1.0 if i == j else comparison.pair(names[i], names[j]).p for j in numbers] for i in numbers]

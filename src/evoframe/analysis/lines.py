@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from evoframe.analysis.statistics import FEWEST
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, factor_of
 from evoframe.loading import Run
@@ -45,8 +46,9 @@ class Line:
 def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line]:
     """Return the mean over the runs of each group, with its 95 % band (bootstrap over runs).
 
-    Imported rows may have no curves: they do not count, and a group of nothing else has no line. Where the
-    runs of a group are of different lengths, its line ends with the shortest: means of fewer would jump.
+    Groups of fewer than five runs have no band: it would be much too narrow. Imported rows may have no
+    curves: they do not count, and a group of nothing else has no line. Where the runs of a group are of
+    different lengths, its line ends with the shortest: means of fewer would jump.
 
     Args:
         view: The groups.
@@ -57,7 +59,7 @@ def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line
     for number, (name, rows) in enumerate(view.groups.items()):
         curves = _curves(rows, yardstick) * factor_of(unit)
         if curves.size:
-            band = _band(curves) if len(curves) > 1 else None
+            band = _band(curves) if len(curves) >= FEWEST else None
             drawn.append(Line(f"{name}: {len(curves)}", curves.mean(axis=0), number, number, band))
     return drawn
 

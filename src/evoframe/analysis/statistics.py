@@ -22,17 +22,22 @@ from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import find_pair, in_notation
 
 __all__ = [
+    "FEWEST",
     "Comparison",
     "Group",
     "Pairwise",
     "a12",
     "compare",
     "detectable_a12",
+    "ranked",
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
 
-_FEWEST = 3  # values that Shapiro-Wilk can judge
+FEWEST = 5
+"""Values of a group, with fewer of which tests, bands and boxes say nothing."""
+
+_JUDGED = 3  # values at least, that Shapiro-Wilk can judge
 
 
 @attrs.frozen
@@ -143,8 +148,9 @@ def compare(
     """
     arrays = {name: np.asarray(given, dtype=np.float64) for name, given in values.items()}
     _refuse(arrays)
-    ranks = dict(zip(arrays, _mean_ranks(list(arrays.values())), strict=True))
-    ordered = {name: arrays[name] for name in sorted(arrays, key=lambda name: (-ranks[name], name))}
+    groups = ranked(values)
+    ranks = {group.name: group.mean_rank for group in groups}
+    ordered = {name: arrays[name] for name in ranks}
     h, p = _kruskal(list(ordered.values()))
     n = sum(len(array) for array in ordered.values())
     dunn = _dunn(list(ordered.values()), correction)
@@ -160,7 +166,7 @@ def compare(
         for i, j in itertools.combinations(range(len(names)), 2)
     ]
     return Comparison(
-        groups=tuple(_group(name, array, ranks[name]) for name, array in ordered.items()),
+        groups=groups,
         correction=correction,
         alpha=alpha,
         h=h,
@@ -169,6 +175,18 @@ def compare(
         pairs=tuple(pairs),
         letters=dict(zip(names, _letters(dunn, alpha), strict=True)),
     )
+
+
+def ranked(values: Mapping[str, Sequence[float]]) -> tuple[Group, ...]:
+    """Return how the values of each group lie, from the greatest mean rank down, those alike by their names.
+
+    Args:
+        values: Name -> values, at least one for each group.
+    """
+    arrays = {name: np.asarray(given, dtype=np.float64) for name, given in values.items()}
+    ranks = _mean_ranks(list(arrays.values()))
+    groups = [_group(name, array, rank) for (name, array), rank in zip(arrays.items(), ranks, strict=True)]
+    return tuple(sorted(groups, key=lambda group: (-group.mean_rank, group.name)))
 
 
 def a12(first: Sequence[float] | Floats, second: Sequence[float] | Floats) -> float:
@@ -218,7 +236,7 @@ def _group(name: str, array: Floats, mean_rank: float) -> Group:
 
 
 def _shapiro(array: Floats) -> float | None:
-    if len(array) < _FEWEST or np.ptp(array) == 0:
+    if len(array) < _JUDGED or np.ptp(array) == 0:
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that p of many values is not exact

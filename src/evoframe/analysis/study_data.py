@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -10,15 +9,17 @@ from typing import Any, Literal, TypeAlias
 import attrs
 import pandas as pd
 
+from evoframe.analysis.statistics import ranked
 from evoframe.champion import LARGEST_DOCUMENT
 from evoframe.discovery import discover
 from evoframe.errors import InputError
 from evoframe.files import is_file, read_text, shown_name
 from evoframe.plugins import Plugins
 from evoframe.protocols import unit_of
+from evoframe.provenance import differences
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
-from evoframe.study.names import called, last_of, title_of
+from evoframe.study.names import called, headings, title_of
 from evoframe.study.plan import Study, read_study, shown
 from evoframe.study.rows import Row
 
@@ -40,6 +41,7 @@ class StudyData:
         unit: Of the scores.
         planned: How many runs there shall be.
         rows: Of the finished ones, in the order of work.
+        alike: Whether all configurations simulate and score in one way.
         best_run: The directory of the run with the best pair, of those whose directories are there.
         settings: The study as it stands in its file.
         values: Key of the grid -> what stands for a value in rows -> the value, if it is a number or a text.
@@ -50,6 +52,7 @@ class StudyData:
     unit: str
     planned: int
     rows: tuple[Row, ...] = attrs.field(repr=False)
+    alike: bool = True
     best_run: Path | None = None
     settings: str = attrs.field(default="", repr=False)
     values: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict, repr=False)
@@ -84,9 +87,9 @@ class StudyData:
     def views(self, yardstick: Yardstick) -> list[View]:
         """Return what is compared: the values of the last key, in a view for each combination of the others.
 
-        Where there are several, one more view compares the best of each: those with the greatest mean on the
-        *yardstick*. Their names say where they come from, as in ``WM (n = 2)``. A study whose grid is empty
-        has one view of one group, ``all``.
+        Where there are several, one more view compares the best of each: those with the greatest mean rank
+        on the *yardstick*, which rankings put first. Their names say where they come from, as in
+        ``WM (n = 2)``. A study whose grid is empty has one view of one group, ``all``.
         """
         if not self.keys:
             return [View(self.label, "group", {"all": self.rows})]
@@ -94,9 +97,10 @@ class StudyData:
         for row in self.rows:
             groups = found.setdefault(tuple(row.settings[key] for key in self.keys[:-1]), {})
             groups.setdefault(called(row.settings[self.keys[-1]]), []).append(row)
-        titles = [title_of(dict(zip(self.keys, values, strict=False))) for values in found]
+        names = headings(self.keys)
+        titles = [title_of(dict(zip(self.keys, values, strict=False)), names) for values in found]
         views = [
-            View(title or self.label, last_of(self.keys[-1]), groups)
+            View(title or self.label, names[self.keys[-1]], groups)
             for title, groups in zip(titles, found.values(), strict=True)
         ]
         return [*views, _best(views, yardstick)] if len(views) > 1 else views
@@ -124,8 +128,7 @@ class View:
 def _best(views: Sequence[View], yardstick: Yardstick) -> View:
     best: dict[str, Sequence[Row]] = {}
     for view in views:
-        values = view.values(yardstick)
-        name = max(values, key=lambda name: math.fsum(values[name]) / len(values[name]))
+        name = ranked(view.values(yardstick))[0].name
         best[f"{name} ({view.title})"] = view.groups[name]
     return View("best of each", views[0].key, best)
 
@@ -155,6 +158,9 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         unit=_unit(study),
         planned=len(statuses),
         rows=tuple(rows.values()),
+        alike=not any(
+            differences(study.cells[0].config.simulation(), c.config.simulation()) for c in study.cells
+        ),
         best_run=max(here, key=here.__getitem__, default=None),
         settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
         values={
@@ -162,6 +168,11 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
             for key, values in study.grid.items()
         },
     )
+
+
+def _are_alike(study: Study) -> bool:
+    first, *others = [cell.config.simulation() for cell in study.cells]
+    return not any(differences(first, other) for other in others)
 
 
 def _unit(study: Study) -> str:

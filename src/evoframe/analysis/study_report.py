@@ -17,8 +17,7 @@ from evoframe.analysis.lines import Line, lines_of_view
 from evoframe.analysis.page import Block, Chart, Section, Source, Table, Words, page
 from evoframe.analysis.robustness import robustness_part
 from evoframe.analysis.slugs import slugs
-from evoframe.analysis.statistics import Comparison
-from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick, load_study
+from evoframe.analysis.study_data import StudyData, load_study
 from evoframe.analysis.tables import (
     Compared,
     comparisons,
@@ -36,6 +35,11 @@ from evoframe.plugins import Plugins
 from evoframe.study.conduct import STUDY_FILE
 
 __all__ = ["write_study_report"]
+
+_RANKINGS = (
+    "Rankings in the paper's notation, from the greatest mean rank down. What stands between two neighbours "
+    "is said of these two: = is not found to differ. Others may differ, as letters and pairs say."
+)
 
 
 def write_study_report(
@@ -61,8 +65,8 @@ def write_study_report(
     robustness = robustness_part(directory, plugins, correction)
     prepare_directory(target)
     found = comparisons(data, correction)
-    all_shown = [*_shown(data, found)]
-    written = _figures(data.unit, all_shown, target)
+    drawings = [_Drawing(each, lines_of_view(each.view, each.yardstick, data.unit)) for each in found]
+    written = _figures(data.unit, drawings, target)
     tables = _tables(found)
     for name, table in tables.items():
         written += write_table(table, target / name)
@@ -71,85 +75,75 @@ def write_study_report(
         written += write_champion(champion, target)
     words = _words(data, found)
     written += [*robustness.write(target), write_bytes(words.encode(), target / "conclusions.txt")]
-    rankings, *compared = _compared_sections(data.unit, all_shown, tables["ranking"])
+    rankings, *compared = _compared_sections(data.unit, drawings, tables["ranking"])
     sections = [
         rankings,
-        *(champion_sections(champion, _whose(data)) if champion else []),
+        *(champion_sections(champion, _whose(data, directory)) if champion else []),
         *compared,
         *robustness.sections,
         Section("Tables", _large(tables)),
         Section("Configuration", list(_sources(data))),
     ]
-    written.append(write_bytes(page(data.label, _finished(data), sections), target / "report.html"))
+    written.append(write_bytes(page(data.label, _lead(data), sections), target / "report.html"))
     return Written(words, tuple(written))
 
 
 @attrs.frozen
-class _Shown:
-    """A view on one yardstick.
+class _Drawing:
+    """A view on one yardstick, and what figures and charts draw of it.
 
     Attributes:
-        view: The groups.
-        yardstick: What they are compared by.
-        lines: What figures and charts draw of them; none if no run has a curve.
-        comparison: Of the groups, if there is more than one.
+        compared: The view.
+        lines: Of its groups; none if no run has a curve.
     """
 
-    view: View
-    yardstick: Yardstick
+    compared: Compared
     lines: Sequence[Line]
-    comparison: Comparison | None
 
 
-def _shown(data: StudyData, found: Compared) -> Iterator[_Shown]:
-    compared = {(view.title, yardstick): comparison for view, yardstick, comparison in found}
-    for yardstick in YARDSTICKS:
-        for view in data.views(yardstick):
-            lines = lines_of_view(view, yardstick, data.unit)
-            yield _Shown(view, yardstick, lines, compared.get((view.title, yardstick)))
-
-
-def _figures(unit: str, all_shown: Sequence[_Shown], directory: Path) -> list[Path]:
+def _figures(unit: str, drawings: Sequence[_Drawing], directory: Path) -> list[Path]:
     written = []
-    names = slugs(f"{shown.yardstick} {shown.view.title}" for shown in all_shown)
-    for shown, name in zip(all_shown, names, strict=True):
-        view, yardstick, comparison = shown.view, shown.yardstick, shown.comparison
-        title = f"{view.title}, {NAMES[yardstick]}"
-        if shown.lines:
-            curves = curves_of(shown.lines, view, yardstick, unit)
+    names = slugs(f"{each.compared.yardstick} {each.compared.view.title}" for each in drawings)
+    for each, name in zip(drawings, names, strict=True):
+        view, yardstick, comparison = each.compared.view, each.compared.yardstick, each.compared.comparison
+        if each.lines:
+            curves = curves_of(each.lines, view, yardstick, unit)
             written += write_figure(curves, directory / f"curves-{name}")
         written += write_figure(finals(view, yardstick, unit, comparison), directory / f"finals-{name}")
         if comparison is not None:
-            written += write_figure(ranks(comparison, title), directory / f"ranks-{name}")
+            written += write_figure(ranks(comparison, _heading(each.compared)), directory / f"ranks-{name}")
     return written
 
 
-def _tables(found: Compared) -> dict[str, pd.DataFrame]:
+def _heading(compared: Compared) -> str:
+    return f"{compared.view.title}, {NAMES[compared.yardstick]}"
+
+
+def _tables(found: Sequence[Compared]) -> dict[str, pd.DataFrame]:
     return {"summary": summary_table(found), "pairs": pairs_table(found), "ranking": ranking_table(found)}
 
 
 def _large(tables: dict[str, pd.DataFrame]) -> list[Block]:
     captions = {
         "summary": "How the values of each group lie; groups that share a letter are not found to differ.",
-        "pairs": "All pairs of groups: Dunn's test, and how often the first beats the second (A12).",
+        "pairs": "All pairs of groups: Dunn's test, and how often the first is the greater (A12).",
     }
     return [Table(caption, tables[name]) for name, caption in captions.items() if len(tables[name])]
 
 
-def _compared_sections(unit: str, all_shown: Sequence[_Shown], rankings: pd.DataFrame) -> list[Section]:
+def _compared_sections(unit: str, drawings: Sequence[_Drawing], rankings: pd.DataFrame) -> list[Section]:
     """Return a section for each view, with both yardsticks, after that of all rankings."""
     by_title: dict[str, list[Block]] = {}
-    for shown in all_shown:
-        view, name = shown.view, NAMES[shown.yardstick]
-        blocks = by_title.setdefault(view.title, [])
-        if shown.comparison is not None:
-            blocks.append(Words(f"{shown.comparison.ranking}: {conclusion(shown.comparison, f'the {name}')}"))
-        if shown.lines:
-            plot = lines_chart(shown.lines, axis_title(name, unit))
-            blocks.append(Chart(f"The {name} in each generation: {_over_runs(shown.lines)}.", plot))
-        plot = finals_chart(view, shown.yardstick, unit)
+    for each in drawings:
+        view, yardstick = each.compared.view, each.compared.yardstick
+        name, blocks = NAMES[yardstick], by_title.setdefault(view.title, [])
+        blocks += [Words(line) for line in _said(each.compared)]
+        if each.lines:
+            plot = lines_chart(each.lines, axis_title(name, unit))
+            blocks.append(Chart(f"The {name} in each generation: {_over_runs(each.lines)}.", plot))
+        plot = finals_chart(view, yardstick, unit)
         blocks.append(Chart(f"The {name} of every run in the end.", plot))
-    summary = [Table("Rankings in the paper's notation: = is not found to differ.", rankings)]
+    summary = [Table(_RANKINGS, rankings)]
     sections = [Section(title, blocks) for title, blocks in by_title.items()]
     return [Section("Rankings", summary if len(rankings) else []), *sections]
 
@@ -167,21 +161,36 @@ def _sources(data: StudyData) -> Iterator[Block]:
         yield Table("What made the best run.", versions_table(provenance))
 
 
-def _whose(data: StudyData) -> str:
-    here = "" if data.best_run is None else f" ({data.best_run.parent.name}, run {data.best_run.name})"
+def _whose(data: StudyData, directory: Path) -> str:
+    here = "" if data.best_run is None else f" ({data.best_run.relative_to(directory).as_posix()})"
     return f"of the best run whose directory is here{here}"
 
 
-def _words(data: StudyData, found: Compared) -> str:
-    parts = [f"{data.label}: {_finished(data)}"]
-    for view, yardstick, comparison in found:
-        what, heading = f"the {NAMES[yardstick]}", f"{view.title}, {NAMES[yardstick]}"
-        parts.append(f"{heading}: {comparison.ranking}\n{conclusion(comparison, what)}")
+def _words(data: StudyData, found: Sequence[Compared]) -> str:
+    parts = [f"{data.label}: {_lead(data)}"]
+    parts += [f"{_heading(each)}: {_lines(each)}" for each in found]
     return "\n\n".join(parts) + "\n"
 
 
-def _finished(data: StudyData) -> str:
-    finished = f"{len(data.rows)} of {data.planned} runs are finished."
-    return (
-        finished if len(data.rows) == data.planned else f"{finished} What follows may change with the others."
-    )
+def _lines(compared: Compared) -> str:
+    return "\n".join(_said(compared))
+
+
+def _said(compared: Compared) -> list[str]:
+    """Return the ranking of a view, and a paragraph on what it is worth."""
+    if compared.comparison is None:
+        [group] = compared.groups
+        return [f"{group.name} is the only group, so there is nothing that it could be compared with."]
+    return [compared.comparison.ranking, conclusion(compared.comparison, f"the {NAMES[compared.yardstick]}")]
+
+
+def _lead(data: StudyData) -> str:
+    said = [f"{len(data.rows)} of {data.planned} runs are finished."]
+    if len(data.rows) < data.planned:
+        said.append("What follows may change with the others.")
+    if not data.alike:
+        said.append(
+            "The configurations do not all simulate and score in one way, so a score need not mean the same "
+            "in all of them."
+        )
+    return " ".join(said)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+import attrs
 import pandas as pd
 
 from evoframe.analysis.corrections import Correction
-from evoframe.analysis.statistics import Comparison, compare
+from evoframe.analysis.statistics import Comparison, Group, compare, ranked
 from evoframe.analysis.study_data import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.provenance import leaves
 from evoframe.verification import Verification
 
 __all__ = [
+    "Compared",
     "comparisons",
     "pairs_table",
     "ranking_table",
@@ -22,26 +24,52 @@ __all__ = [
     "versions_table",
 ]
 
-Compared: TypeAlias = list[tuple[View, Yardstick, Comparison]]
+_WHERE = ("view", "yardstick")
 
 
-def comparisons(data: StudyData, correction: Correction = "holm") -> Compared:
-    """Return the comparison of each view on each yardstick, where it has two groups or more."""
+@attrs.frozen
+class Compared:
+    """A view on one yardstick.
+
+    Attributes:
+        view: The groups.
+        yardstick: What they are compared by.
+        groups: How their values lie.
+        comparison: Of the groups, if there is more than one.
+    """
+
+    view: View
+    yardstick: Yardstick
+    groups: tuple[Group, ...]
+    comparison: Comparison | None
+
+    @property
+    def where(self) -> dict[str, str]:
+        """The cells of a table that say what a line is about."""
+        return {"view": self.view.title, "yardstick": self.yardstick}
+
+
+def comparisons(data: StudyData, correction: Correction = "holm") -> list[Compared]:
+    """Return what is to be said of each view on each yardstick."""
     return [
-        (view, yardstick, compare(view.values(yardstick), correction))
-        for yardstick in YARDSTICKS
-        for view in data.views(yardstick)
-        if len(view.groups) > 1
+        _compared(view, yardstick, correction) for yardstick in YARDSTICKS for view in data.views(yardstick)
     ]
 
 
-def summary_table(found: Compared) -> pd.DataFrame:
+def _compared(view: View, yardstick: Yardstick, correction: Correction) -> Compared:
+    values = view.values(yardstick)
+    if len(values) == 1:
+        return Compared(view, yardstick, ranked(values), None)
+    comparison = compare(values, correction)
+    return Compared(view, yardstick, comparison.groups, comparison)
+
+
+def summary_table(found: Sequence[Compared]) -> pd.DataFrame:
     """Return a line for each group: how its values lie, and its letters."""
     return pd.DataFrame(
         [
             {
-                "view": view.title,
-                "yardstick": yardstick,
+                **each.where,
                 "group": group.name,
                 "runs": group.n,
                 "mean rank": group.mean_rank,
@@ -51,48 +79,46 @@ def summary_table(found: Compared) -> pd.DataFrame:
                 "first quartile": group.quartiles[0],
                 "third quartile": group.quartiles[1],
                 "Shapiro-Wilk p": group.shapiro_p,
-                "letters": comparison.letters[group.name],
+                "letters": "" if each.comparison is None else each.comparison.letters[group.name],
             }
-            for view, yardstick, comparison in found
-            for group in comparison.groups
+            for each in found
+            for group in each.groups
         ]
     )
 
 
-def pairs_table(found: Compared) -> pd.DataFrame:
-    """Return a line for each pair of groups: Dunn's p, and how often the first wins."""
-    return pd.DataFrame(
-        [
-            {
-                "view": view.title,
-                "yardstick": yardstick,
-                "first": pair.first,
-                "second": pair.second,
-                "Dunn p": pair.p,
-                "correction": comparison.correction,
-                "A12": pair.a12,
-            }
-            for view, yardstick, comparison in found
-            for pair in comparison.pairs
-        ]
-    )
+def pairs_table(found: Sequence[Compared]) -> pd.DataFrame:
+    """Return a line for each pair of groups: Dunn's p, and how often the first is the greater."""
+    lines = [
+        {
+            **each.where,
+            "first": pair.first,
+            "second": pair.second,
+            "Dunn p": pair.p,
+            "correction": each.comparison.correction,
+            "A12": pair.a12,
+        }
+        for each in found
+        if each.comparison is not None
+        for pair in each.comparison.pairs
+    ]
+    return pd.DataFrame(lines, columns=[*_WHERE, "first", "second", "Dunn p", "correction", "A12"])
 
 
-def ranking_table(found: Compared) -> pd.DataFrame:
+def ranking_table(found: Sequence[Compared]) -> pd.DataFrame:
     """Return a line for each view and yardstick: Kruskal-Wallis, and the ranking in the paper's notation."""
-    return pd.DataFrame(
-        [
-            {
-                "view": view.title,
-                "yardstick": yardstick,
-                "ranking": comparison.ranking,
-                "Kruskal-Wallis H": comparison.h,
-                "p": comparison.p,
-                "epsilon squared": comparison.epsilon_squared,
-            }
-            for view, yardstick, comparison in found
-        ]
-    )
+    lines = [
+        {
+            **each.where,
+            "ranking": each.comparison.ranking,
+            "Kruskal-Wallis H": each.comparison.h,
+            "p": each.comparison.p,
+            "epsilon squared": each.comparison.epsilon_squared,
+        }
+        for each in found
+        if each.comparison is not None
+    ]
+    return pd.DataFrame(lines, columns=[*_WHERE, "ranking", "Kruskal-Wallis H", "p", "epsilon squared"])
 
 
 def verification_table(verification: Verification) -> pd.DataFrame:

@@ -6,12 +6,11 @@ from collections.abc import Iterator, Sequence
 
 from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import oriented
-from evoframe.analysis.statistics import Comparison, Pairwise, detectable_a12
+from evoframe.analysis.statistics import FEWEST, Comparison, Pairwise, detectable_a12
 
 __all__ = ["conclusion", "corrected", "in_words", "listed"]
 
 _FEW = 10  # values; below that a rank test of several groups finds next to nothing
-_TOO_FEW = 5  # values; below that the distributions that the tests suppose are far from the true ones
 _MOST = 15  # pairs that a reader follows
 
 _CORRECTIONS = {
@@ -84,7 +83,7 @@ def _limits(comparison: Comparison, values: tuple[str, str]) -> str:
     tests = 1 if comparison.correction == "none" else len(comparison.pairs)
     found = detectable_a12(fewest, tests, comparison.alpha)
     count = f"{fewest} {values[0] if fewest == 1 else values[1]}"
-    if fewest < _TOO_FEW:
+    if fewest < FEWEST:
         return (
             f"With {count} in the smallest group these tests, whose p-values suppose more of them, show "
             "nothing, and exclude nothing."

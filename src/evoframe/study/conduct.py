@@ -21,7 +21,7 @@ from evoframe.provenance import differences
 from evoframe.store import is_leftover, write_atomically
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
-from evoframe.study.progress import Status, forget_failure, note_failure, status
+from evoframe.study.progress import REMEDY, Status, forget_failure, note_failure, status
 from evoframe.study.worker import Order
 
 __all__ = ["STUDY_FILE", "Watcher", "alone", "claim", "conduct", "refuse_another", "survey"]
@@ -127,7 +127,7 @@ def survey(study: Study, directory: Path, imported: Collection[Planned] = ()) ->
     try:
         own = {planned: status(planned) for planned in study.planned(directory)}
     except InputError as error:
-        raise InputError(f"{error}; a run whose directory is removed is made again") from error
+        raise InputError(f"{error}; {REMEDY}") from error
     return {
         planned: Status("imported") if planned in imported and not found.is_done else found
         for planned, found in own.items()

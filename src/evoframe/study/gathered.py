@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from evoframe.errors import InputError
 from evoframe.study.plan import Planned, Study, shown
-from evoframe.study.progress import Status
+from evoframe.study.progress import REMEDY, Status
 from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write_rows
 
 __all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
@@ -111,11 +111,14 @@ def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) 
     Raises:
         InputError: The directory of a run is damaged.
     """
-    return {
-        run: imported[run] if status.state == "imported" else row_of(run)
-        for run, status in statuses.items()
-        if status.is_done
-    }
+    try:
+        return {
+            run: imported[run] if status.state == "imported" else row_of(run)
+            for run, status in statuses.items()
+            if status.is_done
+        }
+    except InputError as error:
+        raise InputError(f"{error}; {REMEDY}") from error
 
 
 def _refuse_another(row: Row, run: Planned, path: Path) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
-__all__ = ["called", "last_of", "name_of", "title_of"]
+__all__ = ["called", "headings", "name_of", "title_of"]
 
 
 def called(value: str) -> str:
@@ -12,19 +12,30 @@ def called(value: str) -> str:
     return value.upper() if len(value) == 2 else value
 
 
-def title_of(settings: Mapping[str, str]) -> str:
-    """Return what cells have in common that share these settings: ``n = 2``."""
-    return ", ".join(f"{last_of(key)} = {value}" for key, value in settings.items())
+def headings(keys: Collection[str]) -> dict[str, str]:
+    """Return what each dotted key is called: its last part, or as many as tell it from the others."""
+    return {key: _shortest(key, [other for other in keys if other != key]) for key in keys}
+
+
+def title_of(settings: Mapping[str, str], names: Mapping[str, str]) -> str:
+    """Return what cells have in common that share these settings: ``n = 2``.
+
+    Args:
+        settings: Dotted key -> value.
+        names: What the keys are called.
+    """
+    return ", ".join(f"{names[key]} = {value}" for key, value in settings.items())
 
 
 def name_of(settings: Mapping[str, str]) -> str:
     """Return what a cell is called among all others: ``WM (n = 2)``; empty if it has no settings."""
     *others, last = [*settings] or [""]
-    title = title_of({key: settings[key] for key in others})
+    title = title_of({key: settings[key] for key in others}, headings(settings))
     name = called(settings.get(last, ""))
     return f"{name} ({title})" if title else name
 
 
-def last_of(key: str) -> str:
-    """Return what a table calls a dotted key: its last part."""
-    return key.rsplit(".", 1)[-1]
+def _shortest(key: str, others: Collection[str]) -> str:
+    parts = key.split(".")
+    endings = [".".join(parts[-n:]) for n in range(1, len(parts) + 1)]
+    return next((end for end in endings if not any(f".{other}".endswith(f".{end}") for other in others)), key)

@@ -21,6 +21,7 @@ from evoframe.layers import Layer, Layers, Tree, layer_of, read_layers
 from evoframe.plugins import Plugins, suggestion
 from evoframe.resolve import resolved
 from evoframe.structuring import found
+from evoframe.study.names import headings
 
 __all__ = ["Cell", "Planned", "Study", "read_study", "shown", "study_names"]
 
@@ -129,8 +130,7 @@ class Study:
     @property
     def headings(self) -> list[str]:
         """What a table calls the keys of the grid: the last part of each, where that is enough."""
-        last = [key.rsplit(".", 1)[-1] for key in self.grid]
-        return [short if last.count(short) == 1 else key for key, short in zip(self.grid, last, strict=True)]
+        return [*headings(self.grid).values()]
 
     def planned(self, directory: Path) -> Iterator[Planned]:
         """Yield all runs in the order of work: the first of every cell, then the second of every cell."""

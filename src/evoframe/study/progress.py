@@ -17,7 +17,10 @@ from evoframe.resuming import is_verified
 from evoframe.store import CONFIG_FILE, write_json
 from evoframe.study.plan import Planned
 
-__all__ = ["FAILURE_FILE", "Status", "forget_failure", "note_failure", "status"]
+__all__ = ["FAILURE_FILE", "REMEDY", "Status", "forget_failure", "note_failure", "status"]
+
+REMEDY = "a run whose directory is removed is made again"
+"""What to do about one that is damaged."""
 
 FAILURE_FILE = "failure.json"
 """In the directory of a run that failed: why."""

@@ -146,7 +146,7 @@
       return found;
     };
     const layout = () => {
-      const away = Math.max(1, (1.45 * body.clientHeight) / body.clientWidth); // a narrow view shows less of it
+      const away = Math.max(1, (1.75 * body.clientHeight) / body.clientWidth); // a narrow view shows less of it
       const eye = { x: 0.75 * away, y: -1.3 * away, z: 0.55 * away };
       const scene = { aspectmode: "data", uirevision: "kept", camera: { eye, center: { x: 0, y: 0, z: -0.1 } } };
       ranges().forEach((range, axis) => { scene[`${"xyz"[axis]}axis`] = { range, title: { text: `${"xyz"[axis]} (m)` }, nticks: 5 }; });
