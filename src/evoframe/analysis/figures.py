@@ -165,7 +165,7 @@ def ranks(comparison: Comparison, title: str) -> Figure:
     """
     names = [group.name for group in comparison.groups]
     labels = [broken(f"{group.name}: {group.mean_rank:.3g}", _RANKED, _SIZE) for group in comparison.groups]
-    figure, axes = _figure(f"{title}: mean rank, more is better", 0.5)
+    figure, axes = _figure(title, 0.66)
     numbers = range(len(names))  # the picture would depend on the hashes of names
     p = pd.DataFrame(
         [[1.0 if i == j else comparison.pair(names[i], names[j]).p for j in numbers] for i in numbers]
@@ -188,6 +188,8 @@ def ranks(comparison: Comparison, title: str) -> Figure:
         gap = -_GAP if text.get_horizontalalignment() == "right" else _GAP  # else it touches its line
         text.set_transform(text.get_transform() + ScaledTranslation(gap, 0, figure.dpi_scale_trans))
     axes.locator_params(axis="x", nbins=5)
+    axes.set_xlabel("mean rank (more is better)")
+    axes.xaxis.set_label_position("top")
     height = _spaced(axes, drawn, row_height(labels, _RANKS))
     figure.set_figheight(figure.get_figheight() + height)
     return figure
