@@ -140,7 +140,8 @@ def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
 
 def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:
     """Return the layer of *source*, preceded by those that it extends."""
-    origin, text, folder = _read(source, relative_to)
+    asked = f"{seen[-1]}: extends: " if seen else ""
+    origin, text, folder = _read(source, relative_to, asked)
     if any(_same_source(origin, other) for other in seen):
         raise ConfigurationError(f"{origin}: extends itself: {' -> '.join([*seen, origin])}")
     tree = _parsed(text, origin)
@@ -179,8 +180,8 @@ def _refuse_depth(tree: Tree, origin: str) -> None:
         raise ConfigurationError(f"{origin}: tables and lists are nested more than {_DEEPEST} deep")
 
 
-def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
-    """Return origin, text and folder of a preset or file."""
+def _read(source: str, relative_to: Path, asked: str) -> tuple[str, str, Path]:
+    """Return origin, text and folder of a preset or file; *asked* says in errors what wants it."""
     if source in preset_names():
         text = files("evoframe").joinpath("presets", f"{source}.toml").read_text(encoding="utf-8")
         return f"preset '{source}'", text, Path()
@@ -188,13 +189,13 @@ def _read(source: str, relative_to: Path) -> tuple[str, str, Path]:
     if not source.endswith(".toml") and not path.exists():
         known = preset_names()
         raise ConfigurationError(
-            f"there is no preset '{source}'{suggestion(source, known, 'presets')}; "
+            f"{asked}there is no preset '{source}'{suggestion(source, known, 'presets')}; "
             "a file needs the ending .toml"
         )
     try:
         return str(path), read_text(path, _LARGEST_FILE), path.parent
     except InputError as error:
-        raise ConfigurationError(str(error)) from error
+        raise ConfigurationError(f"{asked}{error}") from error
 
 
 def _override(text: str) -> Layer:

@@ -238,6 +238,20 @@ class TestFaults:
         ):
             load_config("papr", plugins=toy_plugins)
 
+    @pytest.mark.parametrize(
+        ("base", "message"),
+        [
+            ("papr", r"a\.toml: extends: there is no preset 'papr'"),
+            ("b.toml", r"a\.toml: extends: .*b\.toml: cannot be read"),
+        ],
+    )
+    def test_what_a_file_extends_in_vain_is_named_with_it(
+        self, tmp_path: Path, toy_plugins: Plugins, base: str, message: str
+    ) -> None:
+        (tmp_path / "a.toml").write_text(f'extends = "{base}"')
+        with pytest.raises(ConfigurationError, match=message):
+            load_config(tmp_path / "a.toml", plugins=toy_plugins)
+
     def test_files_that_extend_each_other_are_refused(self, tmp_path: Path, toy_plugins: Plugins) -> None:
         (tmp_path / "a.toml").write_text('extends = "b.toml"')
         (tmp_path / "b.toml").write_text('extends = "a.toml"')

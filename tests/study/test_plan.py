@@ -125,13 +125,16 @@ class TestSeeds:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("runs = 3", ""), "runs: is missing"),
+        (("runs = 3", ""), "study.toml: runs: is missing"),
         (("runs = 3", "runs = 0"), "runs: expected a whole number from 1 up, found 0"),
         (("runs = 3", "runs = true"), "runs: expected a whole number from 1 up, found true"),
         (("[1, 2]", "[]"), "grid.collaboration.n: expected different values, found"),
         (("[1, 2]", "[1, 1]"), "grid.collaboration.n: expected different values, found"),
         (("[1, 2]", "2"), "grid.collaboration.n: expected a list of values, found 2"),
-        (("[1, 2]", "[1, 9]"), "grid: collaboration.n=9: collaboration: 9 collaborators of 6 members"),
+        (
+            ("[1, 2]", "[1, 9]"),
+            "study.toml: grid: collaboration.n=9: collaboration: 9 collaborators of 6 members",
+        ),
         (
             ('"collaboration.n"', '"collaboration.m"'),
             "grid: collaboration.m=1: collaboration.m: unknown option",
@@ -143,7 +146,11 @@ class TestSeeds:
         ),
         (("[1, 2]", '[1, "1"]'), 'grid.collaboration.n: expected different values, found [1, "1"]'),
         (('"collaboration.n"', '"a b"'), "grid: 'a b' is no key"),
-        (("[grid]", "[grit]"), "grid: is missing"),
+        (("[grid]", "[grit]"), "study.toml: grid: is missing"),
+        (
+            ('"collaboration.n"', '"simulator.gain"'),
+            "grid: simulator.gain: is a part of simulator",
+        ),
         (("runs = 3", "runs = 1000000"), "a study of 4000000 runs; at most 1000000"),
     ],
 )

@@ -11,7 +11,7 @@ import pytest
 import toys
 
 import evoframe
-from evoframe import Plugins, RunConfig, assemble, load_run
+from evoframe import InputError, Plugins, RunConfig, assemble, load_run
 from evoframe.errors import LockedError
 from evoframe.locking import held
 from evoframe.observers import Observers
@@ -48,6 +48,13 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch, first: Callable[[RunConfig, Path]
         return prepare(config, out)
 
     monkeypatch.setattr(worker, "prepare", prepared)
+
+
+def test_what_is_left_of_a_damaged_run_is_not_taken_for_one(order: Order) -> None:
+    order.directory.mkdir(parents=True)
+    (order.directory / "champion.vxa").touch()
+    with pytest.raises(InputError, match=r"is not empty; .* a run whose directory is removed is made again"):
+        perform(order, SILENT)
 
 
 def test_a_run_that_another_process_has_made_meanwhile_is_finished(

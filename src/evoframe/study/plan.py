@@ -7,7 +7,7 @@ import hashlib
 import itertools
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -30,7 +30,10 @@ Settings: TypeAlias = tuple[tuple[str, Any], ...]
 
 _KEY = re.compile(r"[a-z0-9_-]+(\.[a-z0-9_-]+)*")
 _PLAIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,60}")
-_OWN_KEYS = ("runs", "grid")
+_OWN_KEYS = {
+    "runs": "how often each configuration is run",
+    "grid": "a table of keys, each with a list of values",
+}
 _MOST_RUNS = 1_000_000
 
 
@@ -164,13 +167,16 @@ def read_study(source: str | Path, overrides: Iterable[str | Layer], plugins: Pl
     """
     read = read_layers(_file_of(source), overrides)
     tree = read.merged()
+    for key, what in _OWN_KEYS.items():
+        if key not in tree:
+            raise ConfigurationError(f"{source}: {key}: is missing: {what}")
     origin = read.origin(("grid",))
-    runs, grid = _runs(tree, read.origin(("runs",))), _grid(tree, origin)
+    runs, grid = _runs(tree["runs"], read.origin(("runs",))), _grid(tree["grid"], origin)
     layers, label = read.without(*_OWN_KEYS), Path(source).stem
     if runs * _size(grid) > _MOST_RUNS:
         raise ConfigurationError(f"{origin}: a study of {runs * _size(grid)} runs; at most {_MOST_RUNS}")
     cells = [
-        Cell(settings, resolved(layers.under(_layers(settings)), label, plugins))
+        Cell(settings, resolved(layers.under(_layers(settings, f"{origin}: ")), label, plugins))
         for settings in _combinations(grid)
     ]
     return Study(layers, label, grid, runs, tuple(cells))
@@ -189,20 +195,17 @@ def _file_of(source: str | Path) -> str | Path:
     return source
 
 
-def _runs(tree: Mapping[str, Any], origin: str) -> int:
-    if "runs" not in tree:
-        raise ConfigurationError(f"{origin}: runs: is missing: how often each configuration is run")
-    runs = tree["runs"]
+def _runs(runs: Any, origin: str) -> int:
     if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
         raise ConfigurationError(f"{origin}: runs: expected a whole number from 1 up, found {found(runs)}")
     return runs
 
 
-def _grid(tree: Mapping[str, Any], origin: str) -> dict[str, tuple[Any, ...]]:
+def _grid(table: Any, origin: str) -> dict[str, tuple[Any, ...]]:
     """Return the grid; a quoted dotted key and a table within a table mean the same."""
-    if "grid" not in tree:
-        raise ConfigurationError(f"{origin}: grid: is missing: a table of keys, each with a list of values")
-    grid = dict(_axes(tree["grid"], (), origin))
+    axes = list(_axes(table, (), origin))
+    _refuse_overlaps([key for key, _ in axes], origin)
+    grid = dict(axes)
     for key, values in grid.items():
         if key == "run.seed":
             raise ConfigurationError(f"{origin}: grid: run.seed: seeds are derived; say with runs how many")
@@ -217,6 +220,13 @@ def _grid(tree: Mapping[str, Any], origin: str) -> dict[str, tuple[Any, ...]]:
                 f"{origin}: grid.{key}: expected different values, found {found(list(values))}"
             )
     return grid
+
+
+def _refuse_overlaps(keys: Sequence[str], origin: str) -> None:
+    """Refuse keys of which one sets a part of the other."""
+    for one, other in itertools.combinations(sorted(keys), 2):
+        if other.startswith(f"{one}."):
+            raise ConfigurationError(f"{origin}: grid: {other}: is a part of {one}, which is there too")
 
 
 def _axes(table: Any, path: tuple[str, ...], origin: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
@@ -245,8 +255,8 @@ def _size(grid: Mapping[str, tuple[Any, ...]]) -> int:
     return size
 
 
-def _layers(settings: Settings) -> list[Layer]:
-    return [layer_of(f"grid: {key}={shown(value)}", key, value) for key, value in settings]
+def _layers(settings: Settings, where: str = "") -> list[Layer]:
+    return [layer_of(f"{where}grid: {key}={shown(value)}", key, value) for key, value in settings]
 
 
 def shown(value: Any) -> str:

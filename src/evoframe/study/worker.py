@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -13,7 +12,7 @@ import attrs
 
 from evoframe.config import RunConfig
 from evoframe.discovery import discover
-from evoframe.errors import OccupiedError
+from evoframe.errors import InputError, LockedError, OccupiedError
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer, Layers, layer_of
 from evoframe.observers import Observers
@@ -22,6 +21,7 @@ from evoframe.resolve import resolved
 from evoframe.resuming import is_finished, reopen, verify_if_missing
 from evoframe.run import Execution, prepare
 from evoframe.store import CONFIG_FILE
+from evoframe.study.progress import REMEDY
 from evoframe.values import Turn
 
 __all__ = ["Order", "Talk", "perform"]
@@ -83,10 +83,16 @@ def perform(order: Order, talk: Talk) -> bool:
 
 def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
     """Return a new run; ``None`` if there is one already."""
-    if not (order.directory / CONFIG_FILE).exists():
-        with contextlib.suppress(OccupiedError):  # by another process, a moment ago
-            return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
-    return None
+    if (order.directory / CONFIG_FILE).exists():
+        return None
+    try:
+        return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+    except OccupiedError:  # by another process, a moment ago
+        return None
+    except LockedError:
+        raise
+    except InputError as error:
+        raise InputError(f"{error}, or remove this one: {REMEDY}") from error
 
 
 def _alone(config: RunConfig) -> list[Layer]:
