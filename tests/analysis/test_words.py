@@ -32,7 +32,7 @@ def test_groups_that_differ() -> None:
         "Between GM, WM and AM, the score differs as a whole (Kruskal-Wallis, H = 79.12, p < 0.001"
     )
     assert "GM is above AM (the greater in 100% of all comparisons of two runs, p < 0.001)" in words
-    assert ", by Dunn's test, corrected after Holm." in words
+    assert ", by Dunn's test, corrected after Holm; ties count half." in words
     assert "not found to differ" not in words
 
 
@@ -40,7 +40,7 @@ def test_one_that_differs_from_two_that_do_not() -> None:
     groups = {"AM": NOISE[0], "WM": NOISE[1], "GM": [value - 100 for value in NOISE[2]]}
     words = conclusion(compare(groups, "none"), "the score")
     assert "AM is above GM (the greater in 100% of" in words
-    assert ", by Dunn's test, not corrected for the number of pairs. The other pair is not found" in words
+    assert ", by Dunn's test, not corrected for the number of pairs; ties count half. The other pair" in words
     assert "if one is the greater in 71% of" in words  # without a correction
 
 
@@ -76,3 +76,12 @@ def test_too_few_runs() -> None:
     assert words.endswith(
         "With 5 runs in the smallest group, a difference would have to be enormous to be found."
     )
+
+
+def test_a_few_values_of_one_group_do_not_spoil_the_others() -> None:
+    groups = {"AM": NOISE[0], "WM": [value + 100 for value in NOISE[1]], "GM": NOISE[2][:2], "HM": [1.0]}
+    words = conclusion(compare(groups), "the score")
+    assert "WM is above AM (" in words
+    assert "Of HM and GM, with fewer than 5 runs, nothing is shown." in words
+    assert "With 30 runs in the smallest of the others, a difference is found in four of five cases" in words
+    assert "show nothing, and exclude nothing" not in words

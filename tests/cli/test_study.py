@@ -119,7 +119,7 @@ def test_runs_that_fail_are_listed_and_retried_on_demand(
     arguments = ["study", *toy, "--set", hanging, "--set", "runs=1", "--out", "s"]
     failed = evoframe(*arguments)
     assert failed.returncode == 1
-    assert "2 runs have failed; --retry runs them once more" in failed.stderr
+    assert "2 runs have failed; --retry runs what failed once more" in failed.stderr
     assert "failed: collaboration.n=1, simulator=" in failed.stderr
     assert "ZeroDivisionError: not sound" in failed.stderr
     again = evoframe(*arguments)

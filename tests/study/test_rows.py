@@ -217,3 +217,29 @@ def test_curves_can_be_imported_later(made: tuple[Study, Path, list[Planned]], t
     curves.write_text(text)
     import_rows(study, there, [directory / "rows.csv"])
     assert {len(row.fitness_curve) for row in imported_rows(study, there).values()} == {5}
+
+
+def test_a_table_that_contradicts_what_was_imported_is_refused(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path
+) -> None:
+    study, directory, _ = made
+    first, *others = kept(study, directory)
+    there = tmp_path / "there"
+    claim(study, there)
+    import_rows(study, there, [directory / "rows.csv"])
+    other = attrs.evolve(first, fittest_pair_score=first.fittest_pair_score + 1.0, seconds=9.0)
+    write_rows([other, *others], tmp_path / "rows.csv")
+    with pytest.raises(
+        InputError, match=r"run 0: another fittest_pair_score than in the rows imported before"
+    ):
+        import_rows(study, there, [tmp_path / "rows.csv"])
+
+
+@pytest.mark.parametrize("text", ["", "garbage\n", "run,seed\n"])
+def test_what_is_no_table_of_rows_is_refused(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path, text: str
+) -> None:
+    study, directory, _ = made
+    (tmp_path / "rows.csv").write_text(text)
+    with pytest.raises(InputError, match=r"rows\.csv: is no table of a study: it has no column "):
+        import_rows(study, directory, [tmp_path / "rows.csv"])

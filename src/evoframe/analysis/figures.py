@@ -182,6 +182,7 @@ def ranks(comparison: Comparison, title: str) -> Figure:
         color_palette=["black"] * len(names),
         elbow_props={"lw": 0.9},
         marker_props={"s": 14},
+        crossbar_props={"marker": "o", "ms": 4},  # at those that are joined, not at what lies between
     )
     for text in drawn["labels"]:
         text.set_text(labels[int(text.get_text())])

@@ -48,7 +48,7 @@ class Group:
         name: What it is called.
         n: How many values.
         mean: Their arithmetic mean.
-        sd: Their standard deviation, of a sample.
+        sd: Their standard deviation, of a sample; ``None`` of one value.
         median: Their median.
         quartiles: The first and the third.
         mean_rank: The mean of their ranks among the values of all groups, 1 being the least.
@@ -58,7 +58,7 @@ class Group:
     name: str
     n: int
     mean: float
-    sd: float
+    sd: float | None
     median: float
     quartiles: tuple[float, float]
     mean_rank: float
@@ -229,7 +229,7 @@ def _mean_ranks(arrays: Sequence[Floats]) -> list[float]:
 
 def _group(name: str, array: Floats, mean_rank: float) -> Group:
     low, middle, high = np.quantile(array, [0.25, 0.5, 0.75])
-    sd = float(np.std(array, ddof=1)) if len(array) > 1 else 0.0
+    sd = float(np.std(array, ddof=1)) if len(array) > 1 else None
     mean = math.fsum(array) / len(array)
     quartiles = float(low), float(high)
     return Group(name, len(array), mean, sd, float(middle), quartiles, mean_rank, _shapiro(array))

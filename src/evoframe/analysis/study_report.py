@@ -67,7 +67,7 @@ def write_study_report(
     found = comparisons(data, correction)
     drawings = [_Drawing(each, lines_of_view(each.view, each.yardstick, data.unit)) for each in found]
     written = _figures(data.unit, drawings, target)
-    tables = _tables(found)
+    tables = _tables(found, data.unit)
     for name, table in tables.items():
         written += write_table(table, target / name)
     champion = drawn(load_champion(data.best_run, plugins)) if data.best_run else None
@@ -116,11 +116,15 @@ def _figures(unit: str, drawings: Sequence[_Drawing], directory: Path) -> list[P
 
 
 def _heading(compared: Compared) -> str:
-    return f"{compared.view.title}, {NAMES[compared.yardstick]}"
+    return f"{compared.view.title}, {NAMES[compared.yardstick]} by {compared.view.key}"
 
 
-def _tables(found: Sequence[Compared]) -> dict[str, pd.DataFrame]:
-    return {"summary": summary_table(found), "pairs": pairs_table(found), "ranking": ranking_table(found)}
+def _tables(found: Sequence[Compared], unit: str) -> dict[str, pd.DataFrame]:
+    return {
+        "summary": summary_table(found, unit),
+        "pairs": pairs_table(found),
+        "ranking": ranking_table(found),
+    }
 
 
 def _large(tables: dict[str, pd.DataFrame]) -> list[Block]:
@@ -137,7 +141,8 @@ def _compared_sections(unit: str, drawings: Sequence[_Drawing], rankings: pd.Dat
     for each in drawings:
         view, yardstick = each.compared.view, each.compared.yardstick
         name, blocks = NAMES[yardstick], by_title.setdefault(view.title, [])
-        blocks += [Words(line) for line in _said(each.compared)]
+        first, *more = _said(each.compared)
+        blocks += [Words(f"The {name} by {view.key}: {first}"), *map(Words, more)]
         if each.lines:
             plot = lines_chart(each.lines, axis_title(name, unit))
             blocks.append(Chart(f"The {name} in each generation: {_over_runs(each.lines)}.", plot))

@@ -64,8 +64,12 @@ def _compared(view: View, yardstick: Yardstick, correction: Correction) -> Compa
     return Compared(view, yardstick, comparison.groups, comparison)
 
 
-def summary_table(found: Sequence[Compared]) -> pd.DataFrame:
+def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
     """Return a line for each group: how its values lie, and its letters."""
+
+    def with_unit(name: str) -> str:
+        return f"{name} ({unit})" if unit else name
+
     return pd.DataFrame(
         [
             {
@@ -73,11 +77,11 @@ def summary_table(found: Sequence[Compared]) -> pd.DataFrame:
                 "group": group.name,
                 "runs": group.n,
                 "mean rank": group.mean_rank,
-                "mean": group.mean,
-                "sd": group.sd,
-                "median": group.median,
-                "first quartile": group.quartiles[0],
-                "third quartile": group.quartiles[1],
+                with_unit("mean"): group.mean,
+                with_unit("sd"): group.sd,
+                with_unit("median"): group.median,
+                with_unit("first quartile"): group.quartiles[0],
+                with_unit("third quartile"): group.quartiles[1],
                 "Shapiro-Wilk p": group.shapiro_p,
                 "letters": "" if each.comparison is None else each.comparison.letters[group.name],
             }

@@ -57,7 +57,7 @@ def _pairs(comparison: Comparison, values: str) -> list[str]:
     others = f" The other {rest} pairs are not found to differ." if rest > 1 else ""
     if rest == 1:
         others = " The other pair is not found to differ."
-    return [f"{listed(sentences)}, by {how}.{others}", *_doubts(comparison)]
+    return [f"{listed(sentences)}, by {how}; ties count half.{others}", *_doubts(comparison)]
 
 
 def _doubts(comparison: Comparison) -> Iterator[str]:
@@ -79,21 +79,35 @@ def _greater(pair: Pairwise, values: str) -> str:
 
 
 def _limits(comparison: Comparison, values: tuple[str, str]) -> str:
-    fewest = min(group.n for group in comparison.groups)
-    tests = 1 if comparison.correction == "none" else len(comparison.pairs)
-    found = detectable_a12(fewest, tests, comparison.alpha)
-    count = f"{fewest} {values[0] if fewest == 1 else values[1]}"
-    if fewest < FEWEST:
+    few = [group.name for group in comparison.groups if group.n < FEWEST]
+    enough = [group.n for group in comparison.groups if group.n >= FEWEST]
+    if len(enough) < 2:
+        count = _counted(min(group.n for group in comparison.groups), values)
         return (
             f"With {count} in the smallest group these tests, whose p-values suppose more of them, show "
             "nothing, and exclude nothing."
         )
+    if not few:
+        return _found(comparison, min(enough), values, "in the smallest group")
+    found = _found(comparison, min(enough), values, "in the smallest of the others")
+    return f"Of {listed(few)}, with fewer than {FEWEST} {values[1]}, nothing is shown. {found}"
+
+
+def _found(comparison: Comparison, fewest: int, values: tuple[str, str], where: str) -> str:
+    """Say what can be found with so few values."""
+    count = _counted(fewest, values)
     if fewest < _FEW:
-        return f"With {count} in the smallest group, a difference would have to be enormous to be found."
+        return f"With {count} {where}, a difference would have to be enormous to be found."
+    tests = 1 if comparison.correction == "none" else len(comparison.pairs)
+    found = detectable_a12(fewest, tests, comparison.alpha)
     return (
-        f"With {count} in the smallest group, a difference is found in four of five cases if one is the "
-        f"greater in {found:.0%} of all comparisons of two {values[1]}; smaller ones cannot be excluded."
+        f"With {count} {where}, a difference is found in four of five cases if one is the greater in "
+        f"{found:.0%} of all comparisons of two {values[1]}; smaller ones cannot be excluded."
     )
+
+
+def _counted(count: int, values: tuple[str, str]) -> str:
+    return f"{count} {values[0] if count == 1 else values[1]}"
 
 
 def in_words(p: float) -> str:

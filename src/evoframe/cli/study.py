@@ -184,7 +184,8 @@ class _Sitting:
         for planned, status in failed.items():
             click.echo(f"failed: {planned.label}: {status.cause}", err=True)
         if failed:
-            click.echo(f"{len(failed)} runs have failed; --retry runs them once more", err=True)
+            what = "1 run has failed" if len(failed) == 1 else f"{len(failed)} runs have failed"
+            click.echo(f"{what}; --retry runs what failed once more", err=True)
 
 
 def _results(study: Study, rows: Mapping[Planned, Row]) -> Table:

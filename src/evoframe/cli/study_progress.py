@@ -31,6 +31,7 @@ class _State:
     total: int
     done: int = 0
     failed: int = 0
+    elsewhere: int = 0
     running: int = 0
     scores: list[float] = attrs.field(factory=list)
     best: float | None = None
@@ -152,6 +153,8 @@ class StudyProgress:
             state.scores.append(score)
         elif end.state == "failed":
             state.failed += 1
+        elif end.state == "elsewhere":
+            state.elsewhere += 1
         if end.state == "failed" or not (self._quiet or self._live is not None):
             self._console.print(self._line(planned, end, score), soft_wrap=True)
 
@@ -171,10 +174,13 @@ class StudyProgress:
         states = self._cells.values()
         done, total = sum(state.done for state in states), sum(state.total for state in states)
         running, failed = sum(state.running for state in states), sum(state.failed for state in states)
-        left = total - done - failed - running
+        elsewhere = sum(state.elsewhere for state in states)
+        left = total - done - failed - running - elsewhere
         parts = [f"{done}/{total} runs done", f"{running} running", f"{left} left"]
         if failed:
             parts.append(f"{failed} failed")
+        if elsewhere:
+            parts.append(f"{elsewhere} left to others")
         return ", ".join([*parts, *self._work.times(time.monotonic() - self._started)])
 
     def _picture(self) -> Group:

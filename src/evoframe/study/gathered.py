@@ -13,6 +13,8 @@ from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write
 
 __all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
 
+_TOLD = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # the same whoever made a run
+
 IMPORTED = "imported"
 """Folder in the directory of a study with the rows that came from elsewhere."""
 
@@ -49,8 +51,9 @@ def _joined(study: Study, directory: Path, paths: Iterable[Path]) -> list[Row]:
                 raise InputError(f"{path}: {_named(row)}: is no run of this study")
             _refuse_another(row, run, path)
             before = kept.get(_key(row), row)
-            if before.champion != row.champion:
-                raise InputError(f"{path}: {_named(row)}: another champion than in the rows imported before")
+            if differing := [name for name in _TOLD if getattr(before, name) != getattr(row, name)]:
+                what = " and ".join(differing)
+                raise InputError(f"{path}: {_named(row)}: another {what} than in the rows imported before")
             kept[_key(row)] = before if before.fitness_curve else row  # which may have curves
     return list(kept.values())
 

@@ -7,7 +7,7 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -202,10 +202,8 @@ def read_rows(path: Path) -> list[Row]:
     curves = path.with_name(CURVES_FILE)
     drawn = _curves(curves) if curves.is_file() else {}
     rows = []
-    for number, line in enumerate(_table(path), start=2):
+    for number, line in enumerate(_table(path, _COLUMNS), start=2):
         settings = {key: value for key, value in line.items() if key not in _COLUMNS}
-        if lacking := [name for name in _COLUMNS if name not in line]:
-            raise InputError(f"{path}: is no table of a study: it has no column {', '.join(lacking)}")
         try:
             figures = {name: kind(line[name]) for name, kind in _COLUMNS.items()}
         except ValueError as error:
@@ -222,19 +220,22 @@ def read_rows(path: Path) -> list[Row]:
     return rows
 
 
-def _table(path: Path) -> list[dict[str, str]]:
+def _table(path: Path, columns: Collection[str]) -> list[dict[str, str]]:
     try:
-        lines = list(csv.DictReader(io.StringIO(read_text(path, _LARGEST)), strict=True))
+        reader = csv.DictReader(io.StringIO(read_text(path, _LARGEST)), strict=True)
+        lines, there = list(reader), reader.fieldnames or ()
     except csv.Error as error:
         raise InputError(f"{path}: is no table: {error}") from error
     if any(None in line or None in line.values() for line in lines):
         raise InputError(f"{path}: is no table: its lines are of different lengths")
+    if lacking := [name for name in columns if name not in there]:
+        raise InputError(f"{path}: is no table of a study: it has no column {', '.join(lacking)}")
     return lines
 
 
 def _curves(path: Path) -> dict[tuple[Any, ...], tuple[float, ...]]:
     found = {}
-    for number, line in enumerate(_table(path), start=2):
+    for number, line in enumerate(_table(path, ("run", "curve")), start=2):
         generations = [key for key in line if key.isdecimal()]
         settings = tuple(
             (key, value) for key, value in line.items() if key not in ("run", "curve", *generations)

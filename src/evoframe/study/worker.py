@@ -92,7 +92,8 @@ def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution 
     except LockedError:
         raise
     except InputError as error:
-        raise InputError(f"{error}, or remove this one: {REMEDY}") from error
+        what, *_ = str(error).split(";")  # that another directory can be chosen helps a run of a study little
+        raise InputError(f"{what}; {REMEDY}") from error
 
 
 def _alone(config: RunConfig) -> list[Layer]:

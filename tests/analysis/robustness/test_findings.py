@@ -156,7 +156,7 @@ class TestWords:
     def test_say_how_small_a_difference_was_found(self) -> None:
         words = conclusions(find(lifted(measure([1.0, 1.0], 50, unit="m"), 0.002)))
         assert "B is above A (the greater with 100.0% of the controllers, p < 0.001), by Wilcoxon's" in words
-        assert "The smallest found here: the medians of the scores of B and A are 2 mm apart." in words
+        assert "The smallest found here: the medians of B and A are 2 mm apart." in words
 
     def test_say_what_diverged_and_what_rests_on_the_others(self) -> None:
         measured = measure([1.0, 2.0], 50, most=1.5)

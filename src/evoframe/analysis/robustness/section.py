@@ -85,5 +85,5 @@ def _blocks(
     yield Picture(_CAPTION, figure.svg)
     if any(each.simulation != measured.setting.simulation for each in champions):
         yield Words(_OTHERWISE)
-    for paragraph in conclusions(find(measured, correction)).strip().split("\n\n"):
-        yield Words(paragraph)
+    for line in filter(None, conclusions(find(measured, correction)).splitlines()):
+        yield Words(line)

@@ -111,7 +111,8 @@ def _pairs(blocks: BlockComparison) -> str:
         return f"No pair can be told apart by {test}."
     if len(different) > _MOST:
         return f"{len(different)} of {len(blocks.pairs)} pairs differ by {test}; the tables name them."
-    return f"{listed([_greater(oriented(pair)) for pair in different])}, by {test}."
+    doubt = " As all together are not found to differ, this is weak evidence." if blocks.p >= _ALPHA else ""
+    return f"{listed([_greater(oriented(pair)) for pair in different])}, by {test}; ties count half.{doubt}"
 
 
 def _greater(pair: BlockPair) -> str:
@@ -131,7 +132,9 @@ def _size(found: Findings, blocks: BlockComparison) -> str:
 
 
 def _smallest(found: Findings, blocks: BlockComparison) -> Iterator[str]:
-    """Say how small the smallest difference is that was found."""
+    """Say how small the smallest difference between two bodies is that was found."""
+    if len(found.measured.setting.bodies) > len(found.measured.setting.groups):
+        return  # the medians of what groups are worth stand in no table
     groups = () if found.apart is None else found.apart.groups
     medians = {group.name: group.median for group in groups}
     gaps = [
@@ -141,10 +144,7 @@ def _smallest(found: Findings, blocks: BlockComparison) -> Iterator[str]:
         gap, pair = min(gaps, key=lambda found: found[0])
         unit = found.measured.setting.unit
         shown = f"{1000 * gap:.3g} mm" if unit == "m" else f"{gap:.3g} {unit}".rstrip()
-        several = len(found.measured.setting.bodies) > len(found.measured.setting.groups)
-        what = "what a controller finds {} and {} to be worth" if several else "the scores of {} and {}"
-        two = what.format(pair.first, pair.second)
-        yield f"The smallest found here: the medians of {two} are {shown} apart."
+        yield f"The smallest found here: the medians of {pair.first} and {pair.second} are {shown} apart."
 
 
 def _by_body(found: Findings) -> str:
