@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import math
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -65,3 +67,11 @@ def test_the_lines_of_a_run_are_those_of_its_record(tmp_path: Path) -> None:
     assert len(best) == 3
     assert (np.diff(best) >= 0).all()
     assert best[-1] == pytest.approx(1000 * made.champion.score)
+
+
+def test_long_names_are_broken_and_no_html() -> None:
+    name = '{"floor": 0.001, "name": "<b>hm</b>"} (n = 1): 5'
+    [line] = lines_chart([Line(name, np.ones(3), 0, 0)], "").data
+    lines = line.name.split("<br>")
+    assert [html.unescape(part) for part in lines] == textwrap.wrap(name, 22)
+    assert "<b>" not in line.name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from html import escape
 
@@ -19,6 +20,7 @@ from evoframe.analysis.units import NAMES, axis_title, factor_of
 __all__ = ["finals_chart", "lines_chart"]
 
 _FEW = 10  # generations
+_LINE = 22  # characters of a name
 _DASHES = ("solid", "dash", "dot", "dashdot")
 
 
@@ -54,7 +56,7 @@ def lines_chart(drawn: Sequence[Line], label: str) -> Figure:
             Scatter(
                 x=generations.tolist(),
                 y=_told(line.values),
-                name=escape(line.name, quote=False),
+                name=_name(line.name),
                 mode="lines",
                 line_dash=_DASHES[line.dash % len(_DASHES)],
                 legendgroup=line.name,
@@ -77,11 +79,11 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     """
     traces = []
     for number, (name, values) in enumerate(view.values(yardstick).items()):
-        scaled, called = np.array(values) * factor_of(unit), escape(f"{name}: {len(values)}", quote=False)
+        scaled, called = np.array(values) * factor_of(unit), _name(f"{name}: {len(values)}")
         trace = _box(scaled, called) if len(values) >= FEWEST else _points(scaled, called)
         traces.append(trace.update(meta={"colour": number}))
     plot = _arranged(Figure(traces), f"{view.key}: runs", axis_title(NAMES[yardstick], unit))
-    plot.update_xaxes(range=[-0.5, len(traces) - 0.5])  # points alone would lie at the edges
+    plot.update_xaxes(range=[-0.7, len(traces) - 0.5])  # points would lie at the edges
     return plot.update_layout(showlegend=False, hovermode="closest")
 
 
@@ -105,8 +107,13 @@ def _arranged(plot: Figure, x: str, y: str) -> Figure:
         yaxis={"title": {"text": escape(y, quote=False)}},
         margin={"l": 60, "r": 10, "t": 10, "b": 50},
         hovermode="x unified",
-        legend={"orientation": "h", "y": -0.25, "yanchor": "top"},
+        legend={"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom"},
     )
+
+
+def _name(text: str) -> str:
+    """Return a name as plotly reads it, which knows some HTML: in lines that have room on a phone."""
+    return "<br>".join(escape(line, quote=False) for line in textwrap.wrap(text, _LINE))
 
 
 def _told(values: NDArray[np.float64]) -> list[float | None]:
