@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Generic, TypeVar
@@ -11,7 +10,7 @@ import attrs
 import tomli_w
 from attrs import validators
 
-from evoframe.layers import COMPONENTS, Tree
+from evoframe.layers import COMPONENTS, Tree, as_read
 from evoframe.plugins import Plugins, Source
 from evoframe.protocols import (
     Aggregator,
@@ -149,8 +148,7 @@ class RunConfig:
     def deciding(self) -> Tree:
         """Return the tables on which the result depends, all but the executor, as JSON values."""
         kept = {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
-        deciding: Tree = json.loads(json.dumps(kept))  # tuples are read back as lists
-        return deciding
+        return as_read(kept)
 
     def simulation(self) -> Tree:
         """Return the tables that say how a design is simulated and scored."""

@@ -10,6 +10,7 @@ __all__ = [
     "EvoframeError",
     "InputError",
     "LockedError",
+    "NotEmptyError",
     "OccupiedError",
     "PluginError",
     "PluginWarning",
@@ -38,7 +39,11 @@ class LockedError(InputError):
     """A run's directory that another process is writing to."""
 
 
-class OccupiedError(InputError):
+class NotEmptyError(InputError):
+    """A directory for a new run that has something in it."""
+
+
+class OccupiedError(NotEmptyError):
     """A directory for a new run that holds a run already."""
 
 

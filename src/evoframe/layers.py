@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -21,6 +22,7 @@ __all__ = [
     "Layer",
     "Layers",
     "Tree",
+    "as_read",
     "layer_of",
     "layers_of",
     "preset_names",
@@ -99,6 +101,12 @@ class Layers:
                 if _has(self.layers[level].tree, path[:length]):
                     return level
         return 0
+
+
+def as_read(tables: Mapping[str, Any]) -> Tree:
+    """Return tables as they are read back from a file: tuples are lists."""
+    read: Tree = json.loads(json.dumps(tables))
+    return read
 
 
 def preset_names() -> list[str]:

@@ -17,6 +17,7 @@ import numpy as np
 from evoframe.champion import parsed_json
 from evoframe.errors import InputError
 from evoframe.files import is_file, read_text
+from evoframe.layers import as_read
 from evoframe.measurement import Body, Divergence, Robustness, Setting
 from evoframe.provenance import differences
 from evoframe.store import write_atomically
@@ -129,12 +130,11 @@ def read_robustness(directory: str | Path) -> Robustness:
 
 def _tables(setting: Setting) -> dict[str, Any]:
     bodies = [attrs.asdict(body) for body in setting.bodies]
-    simulation: Any = json.loads(json.dumps(setting.simulation))  # tuples are read back as lists
     return {
         "seed": setting.seed,
         "controllers": setting.controllers,
         "unit": setting.unit,
-        "simulation": simulation,
+        "simulation": as_read(setting.simulation),
         "bodies": bodies,
     }
 

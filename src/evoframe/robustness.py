@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ import attrs
 from evoframe.candidates import Candidates, champions, read_candidates
 from evoframe.discovery import discover
 from evoframe.errors import ConfigurationError
-from evoframe.layers import layers_of
+from evoframe.layers import as_read, layers_of
 from evoframe.loading import Run
 from evoframe.measurement import Bench, Body, ControllingSimulator, Robustness, Setting, can_draw, digest_of
 from evoframe.plugins import Plugins
@@ -82,7 +81,7 @@ def measurable(directory: Path, plugins: Plugins) -> Iterator[Measurable]:
     for part in champions(directory, plugins):
         simulator = part.config.simulator.component
         if can_draw(simulator):
-            simulation = json.loads(json.dumps(part.config.simulation()))  # tuples are read back as lists
+            simulation = as_read(part.config.simulation())
             for body in part.bodies:
                 yield Measurable(digest_of(simulator, body.design), simulation)
 

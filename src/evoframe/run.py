@@ -20,6 +20,7 @@ from evoframe.errors import (
     ConfigurationError,
     EvoframeError,
     InputError,
+    NotEmptyError,
     OccupiedError,
     RunError,
 )
@@ -328,7 +329,7 @@ def _refuse_occupied(directory: Path) -> None:
             f"{directory}: is not empty: it {what}; choose another directory with --out{todo}"
         )
     if names:
-        raise InputError(f"{directory}: is not empty; choose another directory with --out")
+        raise NotEmptyError(f"{directory}: is not empty; choose another directory with --out")
 
 
 def _play(coevolution: Coevolution, store: Store, observers: Observers, stop: Callable[[], bool]) -> bool:

@@ -20,6 +20,7 @@ from evoframe.analysis.printed import COLOURS, COLUMN, DASHES, broken, row_heigh
 from evoframe.analysis.statistics import FEWEST, Comparison
 from evoframe.analysis.study_data import View, Yardstick
 from evoframe.analysis.units import NAMES, axis_title, factor_of
+from evoframe.analysis.words import counted
 
 __all__ = ["curves", "curves_of", "finals", "lines", "ranks"]
 
@@ -132,7 +133,10 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
         comparison: Of the groups, for the letters.
     """
     groups = view.values(yardstick)
-    labels = [f"{broken(name, _NAME, _SIZE)}\n{_runs(values)}" for name, values in groups.items()]
+    labels = [
+        f"{broken(name, _NAME, _SIZE)}\n{counted(len(values), 'run', 'runs')}"
+        for name, values in groups.items()
+    ]
     height = max(0.8, len(groups) * row_height(labels, _ROW))
     figure, axes = _figure(view.title, 0.75 + height)
     rng = np.random.default_rng(0)  # of the places of points, nothing else
@@ -151,10 +155,6 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     axes.set_ylim(len(groups) - 0.5, -0.5)  # the first on top
     axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=broken(view.key, height, 8))
     return figure
-
-
-def _runs(values: Sequence[float]) -> str:
-    return "1 run" if len(values) == 1 else f"{len(values)} runs"
 
 
 @plain

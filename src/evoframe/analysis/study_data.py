@@ -158,9 +158,7 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         unit=_unit(study),
         planned=len(statuses),
         rows=tuple(rows.values()),
-        alike=not any(
-            differences(study.cells[0].config.simulation(), c.config.simulation()) for c in study.cells
-        ),
+        alike=_are_alike(study),
         best_run=max(here, key=here.__getitem__, default=None),
         settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
         values={

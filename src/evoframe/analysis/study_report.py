@@ -132,7 +132,7 @@ def _large(tables: dict[str, pd.DataFrame]) -> list[Block]:
         "summary": "How the values of each group lie; groups that share a letter are not found to differ.",
         "pairs": "All pairs of groups: Dunn's test, and how often the first is the greater (A12).",
     }
-    return [Table(caption, tables[name]) for name, caption in captions.items() if len(tables[name])]
+    return [Table(caption, tables[name]) for name, caption in captions.items()]
 
 
 def _compared_sections(unit: str, drawings: Sequence[_Drawing], rankings: pd.DataFrame) -> list[Section]:
@@ -148,9 +148,8 @@ def _compared_sections(unit: str, drawings: Sequence[_Drawing], rankings: pd.Dat
             blocks.append(Chart(f"The {name} in each generation: {_over_runs(each.lines)}.", plot))
         plot = finals_chart(view, yardstick, unit)
         blocks.append(Chart(f"The {name} of every run in the end.", plot))
-    summary = [Table(_RANKINGS, rankings)]
     sections = [Section(title, blocks) for title, blocks in by_title.items()]
-    return [Section("Rankings", summary if len(rankings) else []), *sections]
+    return [Section("Rankings", [Table(_RANKINGS, rankings)]), *sections]
 
 
 def _over_runs(lines: Sequence[Line]) -> str:

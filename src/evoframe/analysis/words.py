@@ -8,7 +8,7 @@ from evoframe.analysis.corrections import Correction
 from evoframe.analysis.pairs import oriented
 from evoframe.analysis.statistics import FEWEST, Comparison, Pairwise, detectable_a12
 
-__all__ = ["conclusion", "corrected", "in_words", "listed"]
+__all__ = ["conclusion", "corrected", "counted", "in_words", "listed"]
 
 _FEW = 10  # values; below that a rank test of several groups finds next to nothing
 _MOST = 15  # pairs that a reader follows
@@ -82,7 +82,7 @@ def _limits(comparison: Comparison, values: tuple[str, str]) -> str:
     few = [group.name for group in comparison.groups if group.n < FEWEST]
     enough = [group.n for group in comparison.groups if group.n >= FEWEST]
     if len(enough) < 2:
-        count = _counted(min(group.n for group in comparison.groups), values)
+        count = counted(min(group.n for group in comparison.groups), *values)
         return (
             f"With {count} in the smallest group these tests, whose p-values suppose more of them, show "
             "nothing, and exclude nothing."
@@ -95,7 +95,7 @@ def _limits(comparison: Comparison, values: tuple[str, str]) -> str:
 
 def _found(comparison: Comparison, fewest: int, values: tuple[str, str], where: str) -> str:
     """Say what can be found with so few values."""
-    count = _counted(fewest, values)
+    count = counted(fewest, *values)
     if fewest < _FEW:
         return f"With {count} {where}, a difference would have to be enormous to be found."
     tests = 1 if comparison.correction == "none" else len(comparison.pairs)
@@ -106,8 +106,9 @@ def _found(comparison: Comparison, fewest: int, values: tuple[str, str], where: 
     )
 
 
-def _counted(count: int, values: tuple[str, str]) -> str:
-    return f"{count} {values[0] if count == 1 else values[1]}"
+def counted(count: int, one: str, several: str) -> str:
+    """Return a number with what it is of, as in ``1 run`` and ``2 runs``."""
+    return f"{count} {one if count == 1 else several}"
 
 
 def in_words(p: float) -> str:

@@ -22,15 +22,13 @@ from evoframe.store import is_leftover, write_atomically
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.progress import REMEDY, Status, forget_failure, note_failure, status
-from evoframe.study.worker import Order
+from evoframe.study.worker import INTERVAL, Order
 
 __all__ = ["STUDY_FILE", "Watcher", "alone", "claim", "conduct", "refuse_another", "survey"]
 
 STUDY_FILE = "study.toml"
 
 _LOCK_FILE = "study.lock"
-
-_INTERVAL = 0.25  # s, between two looks at what the workers tell
 
 
 class Watcher(Protocol):
@@ -145,8 +143,7 @@ def conduct(
         watcher: Is told how it goes on.
         stop: Asked again and again whether to stop; what is running stops after its turn.
     """
-    pool = Pool(workers)
-    with contextlib.closing(pool):
+    with contextlib.closing(Pool(workers)) as pool:
         _Conduct(orders, workers, watcher, pool).work(stop)
 
 
@@ -166,7 +163,7 @@ class _Conduct:
                 self.pool.ask_to_stop()
             while waiting and len(self.running) < self.workers:
                 self._start(waiting.popleft())
-            done, _ = concurrent.futures.wait(self.running, _INTERVAL, FIRST_COMPLETED)
+            done, _ = concurrent.futures.wait(self.running, INTERVAL, FIRST_COMPLETED)
             self._pass_on()
             for future in done:
                 self._end(self.running.pop(future), end_of(future))

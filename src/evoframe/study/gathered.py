@@ -15,6 +15,8 @@ __all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
 
 _TOLD = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # the same whoever made a run
 
+_Key: TypeAlias = tuple[frozenset[tuple[str, str]], int]  # settings and number of a run
+
 IMPORTED = "imported"
 """Folder in the directory of a study with the rows that came from elsewhere."""
 
@@ -33,16 +35,16 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> dict[Pl
     Raises:
         InputError: A row is of no run of this study, or contradicts another of the same run; says which.
     """
-    rows = _joined(study, directory, paths)
+    planned = _by_key(study, directory)
+    rows = _joined(planned, directory, paths)
     folder = directory / IMPORTED
     folder.mkdir(exist_ok=True)
     write_rows(rows, folder / ROWS_FILE)
-    return _of_runs(rows, study, directory)
+    return _of_runs(rows, planned, directory)
 
 
-def _joined(study: Study, directory: Path, paths: Iterable[Path]) -> list[Row]:
+def _joined(planned: Mapping[_Key, Planned], directory: Path, paths: Iterable[Path]) -> list[Row]:
     """Return the rows that were imported before, and those of more tables."""
-    planned = _by_key(study, directory)
     kept = {_key(row): row for row in _kept(directory)}
     for path in paths:
         for row in read_rows(path):
@@ -69,11 +71,12 @@ def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> d
     Raises:
         InputError: They are damaged, or were made otherwise than this study makes them.
     """
-    return _of_runs(_joined(study, directory, more), study, directory)
+    planned = _by_key(study, directory)
+    return _of_runs(_joined(planned, directory, more), planned, directory)
 
 
-def _of_runs(rows: Iterable[Row], study: Study, directory: Path) -> dict[Planned, Row]:
-    planned, found = _by_key(study, directory), {}
+def _of_runs(rows: Iterable[Row], planned: Mapping[_Key, Planned], directory: Path) -> dict[Planned, Row]:
+    found = {}
     for row in rows:
         run = planned.get(_key(row))
         if run is not None:
@@ -85,9 +88,6 @@ def _of_runs(rows: Iterable[Row], study: Study, directory: Path) -> dict[Planned
 def _kept(directory: Path) -> list[Row]:
     path = directory / IMPORTED / ROWS_FILE
     return read_rows(path) if path.is_file() else []
-
-
-_Key: TypeAlias = tuple[frozenset[tuple[str, str]], int]
 
 
 def _key(row: Row) -> _Key:

@@ -12,7 +12,7 @@ import attrs
 
 from evoframe.config import RunConfig
 from evoframe.discovery import discover
-from evoframe.errors import InputError, LockedError, OccupiedError
+from evoframe.errors import InputError, LockedError, NotEmptyError, OccupiedError
 from evoframe.hookspecs import hookimpl
 from evoframe.layers import Layer, Layers, layer_of
 from evoframe.observers import Observers
@@ -24,9 +24,10 @@ from evoframe.store import CONFIG_FILE
 from evoframe.study.progress import REMEDY
 from evoframe.values import Turn
 
-__all__ = ["Order", "Talk", "perform"]
+__all__ = ["INTERVAL", "Order", "Talk", "perform"]
 
-_INTERVAL = 0.25  # s, between two things that are told of a run
+INTERVAL = 0.25
+"""Seconds between two things that are told of a run, and between two looks at what was told."""
 
 
 @attrs.frozen
@@ -92,7 +93,8 @@ def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution 
     except LockedError:
         raise
     except InputError as error:
-        what, *_ = str(error).split(";")  # that another directory can be chosen helps a run of a study little
+        # A run of a study has its place: it is no help that another directory could be chosen.
+        what = f"{order.directory}: is not empty" if isinstance(error, NotEmptyError) else error
         raise InputError(f"{what}; {REMEDY}") from error
 
 
@@ -117,6 +119,6 @@ class _Teller:
         if turn.best_pair is not None:
             self._best = turn.best_pair.score
         now = time.monotonic()
-        if now - self._told >= _INTERVAL:
+        if now - self._told >= INTERVAL:
             self._told = now
             self._talk.tell(turn.index, self._best)

@@ -8,7 +8,7 @@ from evoframe.analysis.blocks import BlockComparison, BlockPair
 from evoframe.analysis.pairs import oriented
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics import Comparison
-from evoframe.analysis.words import conclusion, corrected, in_words, listed
+from evoframe.analysis.words import conclusion, corrected, counted, in_words, listed
 from evoframe.measurement import Robustness
 
 __all__ = ["conclusions"]
@@ -33,8 +33,8 @@ def conclusions(found: Findings) -> str:
 
 def _measured(measured: Robustness) -> str:
     setting = measured.setting
-    bodies, controllers = _counted(len(setting.bodies), "body", "bodies"), setting.controllers
-    drawn = _counted(controllers, *_CONTROLLERS)
+    bodies, controllers = counted(len(setting.bodies), "body", "bodies"), setting.controllers
+    drawn = counted(controllers, *_CONTROLLERS)
     words = f"{bodies} with {drawn}, drawn at random from seed {setting.seed} and the same for every body."
     if len(setting.bodies) > len(setting.groups) > 1:
         words += " With each controller, a group is worth the median of its bodies' scores."
@@ -60,14 +60,14 @@ def _divergences(found: Findings) -> Iterator[str]:
         return
     groups = {name: measured.lost(columns) for name, columns in setting.groups.items()}
     where = listed([f"{lost} of {name}" for name, lost in groups.items() if lost])
-    lost = _counted(len(measured.diverged), "simulation", "simulations")
+    lost = counted(len(measured.diverged), "simulation", "simulations")
     yield f"{lost} diverged, and there is no score for that: {where}. {_left_out(found)}"
 
 
 def _left_out(found: Findings) -> str:
     if not found.common:
         return "There is no controller with which no body diverged, so there are no tests."
-    out = _counted(found.measured.setting.controllers - found.common, *_CONTROLLERS)
+    out = counted(found.measured.setting.controllers - found.common, *_CONTROLLERS)
     return f"All tests leave out {out}, with which a body diverged, for all bodies; {found.common} remain."
 
 
@@ -161,7 +161,3 @@ def _by_body(found: Findings) -> str:
         few = listed(alone) if len(alone) <= _MOST else f"{len(alone)} groups"
         text += f" {few} {'is one body' if len(alone) == 1 else 'are one body each'}: no sample of a method."
     return f"{text} Only this comparison is about what made the bodies; those above are about these bodies."
-
-
-def _counted(count: int, one: str, several: str) -> str:
-    return f"{count} {one if count == 1 else several}"
