@@ -13,8 +13,8 @@ import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from evoframe.analysis.statistics import Comparison, compare
-from evoframe.analysis.study_data import YARDSTICKS, Yardstick
+from evoframe.analysis.data.studies import YARDSTICKS, Yardstick
+from evoframe.analysis.statistics.groups import Comparison, compare
 from evoframe.study.rows import Row, read_rows
 
 AVERAGES = ("AM", "WM", "GM", "HM")

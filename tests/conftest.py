@@ -7,6 +7,8 @@ import signal
 
 import hypothesis
 
+pytest_plugins = ["toy_fixtures"]
+
 # A job in a shell's background ignores Ctrl-C, and so would the programs that tests start and interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 

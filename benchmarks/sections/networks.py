@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.report import Row, Section, SectionError, Table
 from benchmarks.timing import Action, Effort, interleaved
 from evoframe_evolvers import RandomSearch
-from evoframe_evolvers.genomes import NO_SELECTION, GenePool
+from evoframe_evolvers.cppn.genomes import NO_SELECTION, GenePool
 from evoframe_evolvers.random_search import RandomSearchRun
 from evoframe_libcppn import ACTIVATIONS, CppnNetwork
 

@@ -24,9 +24,9 @@ from benchmarks.report import Row, Section, SectionError, Table
 from benchmarks.stages import Stages, Watched
 from benchmarks.timing import Action, Effort, cores_used, interleaved
 from evoframe import Coevolution, Design, ExecutorRun, RunConfig
-from evoframe.observers import Observers
-from evoframe.run import prepare
-from evoframe.store import Store
+from evoframe.record.store import Store
+from evoframe.registry.observers import Observers
+from evoframe.runs.execution import prepare
 from evoframe_libcppn import CppnNetwork
 
 __all__ = ["runs"]

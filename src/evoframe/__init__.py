@@ -6,30 +6,11 @@ the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :f
 """
 
 from evoframe._version import __version__
-from evoframe.coevolution import Coevolution
-from evoframe.config import Chosen, PopulationConfig, RunConfig, RunSettings
-from evoframe.cores import available_cores
-from evoframe.discovery import discover
-from evoframe.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
-from evoframe.errors import (
-    ConfigurationError,
-    EvoframeError,
-    InputError,
-    PluginError,
-    PluginWarning,
-    RunError,
-    WorkerError,
-)
-from evoframe.evaluation import Evaluator, Score
-from evoframe.hookspecs import hookimpl
-from evoframe.layers import Layer
-from evoframe.loading import Champion, Run, load_run
-from evoframe.measurement import Body, Divergence, Robustness, Setting
-from evoframe.notebook import load_study
-from evoframe.plugins import Plugins, suggestion
-from evoframe.population import Population
-from evoframe.processes import WorkerProcesses
-from evoframe.protocols import (
+from evoframe.config.layers import Layer
+from evoframe.config.resolve import load_config
+from evoframe.contract.config import Chosen, PopulationConfig, RunConfig, RunSettings
+from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
+from evoframe.contract.protocols import (
     Aggregator,
     CollaborationStrategy,
     Encoder,
@@ -41,11 +22,7 @@ from evoframe.protocols import (
     Objective,
     Simulator,
 )
-from evoframe.resolve import load_config
-from evoframe.resuming import resume
-from evoframe.robustness import robustness
-from evoframe.run import assemble, run
-from evoframe.values import (
+from evoframe.contract.values import (
     BestPair,
     Design,
     Export,
@@ -59,9 +36,32 @@ from evoframe.values import (
     Variant,
     Workload,
 )
-from evoframe.verification import Finding, Verification
-from evoframe.verify import verify
-from evoframe.voxels import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE
+from evoframe.contract.voxels import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE
+from evoframe.designs.verifying import verify
+from evoframe.errors import (
+    ConfigurationError,
+    EvoframeError,
+    InputError,
+    PluginError,
+    PluginWarning,
+    RunError,
+    WorkerError,
+)
+from evoframe.evolution.coevolution import Coevolution
+from evoframe.evolution.evaluation import Evaluator, Score
+from evoframe.evolution.population import Population
+from evoframe.notebook import load_study
+from evoframe.record.run import Champion, Run, load_run
+from evoframe.record.verification import Finding, Verification
+from evoframe.registry.discovery import discover
+from evoframe.registry.hookspecs import hookimpl
+from evoframe.registry.registry import Plugins, suggestion
+from evoframe.robustness.api import robustness
+from evoframe.robustness.measurement import Body, Divergence, Robustness, Setting
+from evoframe.runs.execution import assemble, run
+from evoframe.runs.resuming import resume
+from evoframe.workers.cores import available_cores
+from evoframe.workers.processes import WorkerProcesses
 
 __all__ = [
     "CONTRACTILE",

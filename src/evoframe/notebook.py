@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from evoframe.plugins import Plugins
+from evoframe.registry.registry import Plugins
 
 if TYPE_CHECKING:
-    from evoframe.analysis.study_data import StudyData
+    from evoframe.analysis.data.studies import StudyData
 
 __all__ = ["load_study"]
 
 
 def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:
-    """Return a study and what is finished of it: data frames, and views for :mod:`evoframe.analysis.figures`.
+    """Return a study and what is finished of it: data frames, and views for its figures.
 
     Args:
         directory: Its directory.
@@ -25,6 +25,6 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         ConfigurationError: It cannot be read with these plugins.
         InputError: It is no study's directory, or one of its runs is damaged.
     """
-    from evoframe.analysis import study_data  # noqa: PLC0415 - takes a second, and an extra
+    from evoframe.analysis.data import studies as study_data  # noqa: PLC0415 - takes a second, and an extra
 
     return study_data.load_study(directory, plugins=plugins)

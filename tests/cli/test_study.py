@@ -15,7 +15,7 @@ from processes import Evoframe, on_a_terminal, started, told
 from toy_study import STUDY
 
 from evoframe import load_run
-from evoframe.cores import available_cores
+from evoframe.workers.cores import available_cores
 
 SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
 

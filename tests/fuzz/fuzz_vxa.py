@@ -22,8 +22,8 @@ import numpy as np
 with atheris.instrument_imports(include=["evoframe", "evoframe_simulators"]):
     import evoframe
     from evoframe_simulators import Vox
-    from evoframe_simulators.vxa import document
-    from evoframe_simulators.vxa.schema import VXA
+    from evoframe_simulators.vox.vxa import document
+    from evoframe_simulators.vox.vxa.schema import VXA
 
 import attrs
 

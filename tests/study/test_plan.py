@@ -13,8 +13,8 @@ import tomli_w
 from toy_study import STUDY
 
 from evoframe import ConfigurationError, run
-from evoframe.coevolution import first_meetings
-from evoframe.discovery import discover
+from evoframe.evolution.coevolution import first_meetings
+from evoframe.registry.discovery import discover
 from evoframe.study.plan import Study, read_study, study_names
 from evoframe.study.rows import Row
 

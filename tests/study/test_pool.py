@@ -15,7 +15,7 @@ import pebble
 import pytest
 from chatter import chatter
 
-from evoframe.layers import Layers
+from evoframe.config.layers import Layers
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.worker import Order
 

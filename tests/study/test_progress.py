@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from evoframe.locking import held
+from evoframe.files.locks import held
+from evoframe.record.verification import VERIFICATION_FILE
 from evoframe.study.plan import Planned, Study
 from evoframe.study.progress import FAILURE_FILE, Status, forget_failure, note_failure, status
-from evoframe.verification import VERIFICATION_FILE
 
 Made = tuple[Study, Path, list[Planned]]
 

@@ -12,15 +12,15 @@ import toys
 
 import evoframe
 from evoframe import InputError, Plugins, RunConfig, assemble, load_run
+from evoframe.config.resolve import resolved
 from evoframe.errors import LockedError
-from evoframe.locking import held
-from evoframe.observers import Observers
-from evoframe.resolve import resolved
-from evoframe.run import Execution, prepare
+from evoframe.files.locks import held
+from evoframe.record.verification import VERIFICATION_FILE
+from evoframe.registry.observers import Observers
+from evoframe.runs.execution import Execution, prepare
 from evoframe.study import worker
 from evoframe.study.plan import Planned, Study
 from evoframe.study.worker import Order, Talk, _Teller, perform
-from evoframe.verification import VERIFICATION_FILE
 
 Read = Callable[..., Study]
 SILENT = Talk(lambda _, __: None, lambda: False)

@@ -8,8 +8,8 @@ import numpy as np
 import toys
 
 from evoframe import Body, Design, Robustness, Setting
-from evoframe.measurement import Bench, digest_of
-from evoframe.protocols import ExecutorRun
+from evoframe.contract.protocols import ExecutorRun
+from evoframe.robustness.measurement import Bench, digest_of
 
 __all__ = ["body", "measure", "setting"]
 

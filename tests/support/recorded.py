@@ -7,7 +7,7 @@ import sqlite3
 from pathlib import Path
 from typing import Any
 
-from evoframe.checksums import CHAINED, SINGLE, Checksums
+from evoframe.record.checksums import CHAINED, SINGLE, Checksums
 
 TABLES = ("turns", "individuals", "pairs", "best_pairs", "state", "meta")
 """All but the workload, which is measured in seconds too."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import toys
 
-from evoframe.plugins import Plugins, Source
+from evoframe.registry.registry import Plugins, Source
 
 
 def installed() -> Plugins:

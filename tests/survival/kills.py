@@ -23,13 +23,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import evoframe.store
+import evoframe.record.store
 from evoframe import Turn, hookimpl, load_config, load_run
-from evoframe.discovery import discover
-from evoframe.loading import has_begun
-from evoframe.observers import Observers
-from evoframe.resuming import is_finished, reopen
-from evoframe.run import prepare
+from evoframe.record.run import has_begun
+from evoframe.registry.discovery import discover
+from evoframe.registry.observers import Observers
+from evoframe.runs.execution import prepare
+from evoframe.runs.resuming import is_finished, reopen
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
 from recorded import assert_same_result, rows
@@ -78,8 +78,8 @@ def dies_at(call: int) -> None:
 
         return wrapper
 
-    evoframe.store._SYNC_INTERVAL = 0.0  # a champion's file and the synchronisation come after every turn
-    store: Any = evoframe.store.Store
+    evoframe.record.store._SYNC_INTERVAL = 0.0  # a champion's file and the synchronisation follow every turn
+    store: Any = evoframe.record.store.Store
     store._write = dying(store._write, after=True)
     replace: Any = dying(Path.replace, after=call % 2 == 0)
     Path.replace = replace  # type: ignore[method-assign]

@@ -13,8 +13,8 @@ import pytest
 from recorded import rewritten
 
 from evoframe import InputError, Run, load_run, run
-from evoframe.checksums import CHAINED, SINGLE
-from evoframe.resuming import reopen
+from evoframe.record.checksums import CHAINED, SINGLE
+from evoframe.runs.resuming import reopen
 
 TRIALS = 200
 PAGE = 4096

@@ -16,10 +16,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evoframe import EvoframeError, InputError, Run, load_config, load_run, run
-from evoframe.champion import read_champion
 from evoframe.cli import cli
-from evoframe.resuming import is_finished, reopen
-from evoframe.run import assemble
+from evoframe.record.champion import read_champion
+from evoframe.runs.execution import assemble
+from evoframe.runs.resuming import is_finished, reopen
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,8 @@ import pytest
 from processes import python
 
 import evoframe
-from evoframe import hookspecs, testing
+from evoframe import testing
+from evoframe.registry import hookspecs
 
 PAGE = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
 PLUGIN, TESTS, OBSERVER = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)

@@ -14,12 +14,12 @@ from neat.reporting import ReporterSet
 from neat.species import Species
 
 from evoframe import ConfigurationError
-from evoframe_evolvers.checked import entry, number, rows, whole, wholes
-from evoframe_evolvers.cohort import Cohort
+from evoframe_evolvers.cppn.checked import entry, number, rows, whole, wholes
+from evoframe_evolvers.cppn.cohort import Cohort
+from evoframe_evolvers.cppn.genomes import Counter, GenePool, Sections
+from evoframe_evolvers.cppn.network_run import NetworkRun
+from evoframe_evolvers.cppn.options import GenomeOptions, at_least, finite, probability
 from evoframe_evolvers.crowding import ExactReproduction, RoomyStagnation
-from evoframe_evolvers.genomes import Counter, GenePool, Sections
-from evoframe_evolvers.network_run import NetworkRun
-from evoframe_evolvers.options import GenomeOptions, at_least, finite, probability
 
 __all__ = ["Neat", "NeatRun"]
 

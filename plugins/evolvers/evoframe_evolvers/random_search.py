@@ -10,11 +10,11 @@ import neat
 import numpy as np
 
 from evoframe import ConfigurationError
-from evoframe_evolvers.checked import entry
-from evoframe_evolvers.cohort import Cohort
-from evoframe_evolvers.genomes import NO_SELECTION, GenePool
-from evoframe_evolvers.network_run import NetworkRun
-from evoframe_evolvers.options import GenomeOptions, at_least
+from evoframe_evolvers.cppn.checked import entry
+from evoframe_evolvers.cppn.cohort import Cohort
+from evoframe_evolvers.cppn.genomes import NO_SELECTION, GenePool
+from evoframe_evolvers.cppn.network_run import NetworkRun
+from evoframe_evolvers.cppn.options import GenomeOptions, at_least
 
 __all__ = ["RandomSearch", "RandomSearchRun"]
 

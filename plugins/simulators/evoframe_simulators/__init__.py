@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 from evoframe import Simulator, hookimpl
-from evoframe_simulators.materials import PaletteMaterial
-from evoframe_simulators.regions import FixedRegion
-from evoframe_simulators.vox import Vox
+from evoframe_simulators.vox.materials import PaletteMaterial
+from evoframe_simulators.vox.regions import FixedRegion
+from evoframe_simulators.vox.simulator import Vox
 
 __all__ = ["FixedRegion", "PaletteMaterial", "Vox", "evoframe_simulators"]
 

@@ -13,11 +13,11 @@ import click
 from click.shell_completion import CompletionItem
 from rich.console import Console
 
-from evoframe.analysis.corrections import CORRECTIONS
-from evoframe.discovery import discover
+from evoframe.analysis.statistics.corrections import CORRECTIONS
+from evoframe.config.layers import Layer, layer_of, preset_names
 from evoframe.errors import InputError
-from evoframe.layers import Layer, layer_of, preset_names
-from evoframe.plugins import Plugins
+from evoframe.registry.discovery import discover
+from evoframe.registry.registry import Plugins
 
 __all__ = [
     "common_options",

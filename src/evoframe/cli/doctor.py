@@ -11,9 +11,9 @@ from rich.table import Table
 from rich.text import Text
 
 from evoframe.cli.context import common_options, output, plugins_of
-from evoframe.doctor import Check, State, check_installation, check_run
 from evoframe.errors import InputError
-from evoframe.plugins import Plugins
+from evoframe.registry.registry import Plugins
+from evoframe.runs.doctor import Check, State, check_installation, check_run
 
 __all__ = ["doctor"]
 

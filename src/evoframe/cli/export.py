@@ -7,13 +7,13 @@ from pathlib import Path
 import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
-from evoframe.config import Chosen
+from evoframe.contract.config import Chosen
+from evoframe.contract.protocols import Simulator
+from evoframe.designs.exporting import export_design, formats_of
+from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import ConfigurationError, InputError, RunError
-from evoframe.exporting import export_design, formats_of
-from evoframe.jobs import Job, naming, read_job
-from evoframe.plugins import suggestion
-from evoframe.protocols import Simulator
-from evoframe.store import write_atomically
+from evoframe.record.store import write_atomically
+from evoframe.registry.registry import suggestion
 
 __all__ = ["export"]
 

@@ -12,12 +12,12 @@ from evoframe.cli.context import is_quiet, output, scored
 from evoframe.cli.progress import Progress
 from evoframe.cli.signals import exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
-from evoframe.config import RunConfig
-from evoframe.loading import Run, load_run
-from evoframe.observers import Observers
-from evoframe.protocols import unit_of
-from evoframe.run import Execution, verify_champion
-from evoframe.verification import can_verify
+from evoframe.contract.config import RunConfig
+from evoframe.contract.protocols import unit_of
+from evoframe.record.run import Run, load_run
+from evoframe.record.verification import can_verify
+from evoframe.registry.observers import Observers
+from evoframe.runs.execution import Execution, verify_champion
 
 __all__ = ["play", "show_end"]
 

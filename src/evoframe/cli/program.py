@@ -25,7 +25,7 @@ from evoframe.cli.simulate import simulate
 from evoframe.cli.study import study
 from evoframe.cli.verify import verify
 from evoframe.errors import EvoframeError, PluginWarning, RunError
-from evoframe.observers import Observers
+from evoframe.registry.observers import Observers
 
 __all__ = ["cli", "main"]
 

@@ -11,9 +11,9 @@ from rich.console import Console, RenderableType
 from rich.text import Text
 
 from evoframe.cli.context import messages
-from evoframe.config import RunConfig
-from evoframe.hookspecs import hookimpl
-from evoframe.values import Turn
+from evoframe.contract.config import RunConfig
+from evoframe.contract.values import Turn
+from evoframe.registry.hookspecs import hookimpl
 
 __all__ = ["Progress"]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from evoframe.analysis.corrections import Correction
+from evoframe.analysis.statistics.corrections import Correction
 from evoframe.cli.context import common_options, correction_option, is_quiet, needing_extra, plugins_of
 from evoframe.errors import InputError
 
@@ -41,7 +41,7 @@ def report(
     that was simulated, and the averaged fitness. The page, report.html, has all in one file.
     """
     with needing_extra("report", "reports"):
-        from evoframe.analysis.report import write_report  # noqa: PLC0415 - takes a second, and an extra
+        from evoframe.analysis.report.report import write_report  # noqa: PLC0415 - takes a second, and an extra
     if out is not None and len(directories) > 1:
         raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
     for directory in directories:

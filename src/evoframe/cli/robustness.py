@@ -12,8 +12,7 @@ import click
 from rich import progress
 from rich.table import Table
 
-from evoframe.analysis.corrections import Correction
-from evoframe.candidates import read_candidates
+from evoframe.analysis.statistics.corrections import Correction
 from evoframe.cli.context import (
     common_options,
     correction_option,
@@ -26,9 +25,10 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
-from evoframe.layers import Layer
-from evoframe.measurement_files import refuse_another, write_measurement
-from evoframe.robustness import measure, setting_of
+from evoframe.config.layers import Layer
+from evoframe.robustness.api import measure, setting_of
+from evoframe.robustness.candidates import read_candidates
+from evoframe.robustness.files import refuse_another, write_measurement
 
 __all__ = ["robustness"]
 
@@ -95,7 +95,7 @@ def robustness(
     """
     with needing_extra("report", "statistics and figures"):
         from evoframe.analysis import robustness as analysis  # noqa: PLC0415 - takes a second, and an extra
-        from evoframe.analysis.writing import prepare_directory  # noqa: PLC0415
+        from evoframe.analysis.output.writing import prepare_directory  # noqa: PLC0415
     settings: list[str | Layer] = [*overrides, *workers]
     candidates = read_candidates(sources, preset, settings, plugins_of(ctx), published=published)
     setting = setting_of(candidates, seed, controllers)

@@ -14,9 +14,9 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.playing import play
-from evoframe.layers import Layer, layer_of
-from evoframe.resolve import load_config
-from evoframe.run import prepare
+from evoframe.config.layers import Layer, layer_of
+from evoframe.config.resolve import load_config
+from evoframe.runs.execution import prepare
 
 __all__ = ["run"]
 

@@ -19,14 +19,14 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
-from evoframe.config import RunConfig
+from evoframe.config.layers import Layer
+from evoframe.contract.config import RunConfig
+from evoframe.contract.protocols import unit_of
+from evoframe.contract.values import Design, Record
+from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import InputError
-from evoframe.evaluation import Score
-from evoframe.jobs import Job, naming, read_job
-from evoframe.layers import Layer
-from evoframe.protocols import unit_of
-from evoframe.run import evaluator_of
-from evoframe.values import Design, Record
+from evoframe.evolution.evaluation import Score
+from evoframe.runs.execution import evaluator_of
 
 __all__ = ["simulate"]
 

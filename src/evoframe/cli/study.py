@@ -15,7 +15,6 @@ from rich.table import Table
 from evoframe.cli.context import common_options, is_quiet, modules_of, output, plugins_of, set_option
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
-from evoframe.cores import available_cores
 from evoframe.study.conduct import alone, claim, conduct, refuse_another, survey
 from evoframe.study.estimate import estimated
 from evoframe.study.gathered import gather, import_rows, imported_rows
@@ -23,6 +22,7 @@ from evoframe.study.plan import Planned, Study, read_study, study_names
 from evoframe.study.progress import Status
 from evoframe.study.rows import ROWS_FILE, Row, write_rows
 from evoframe.study.worker import Order
+from evoframe.workers.cores import available_cores
 
 __all__ = ["study"]
 

@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from evoframe.cli.context import messages
-from evoframe.loading import load_run
+from evoframe.record.run import load_run
 from evoframe.study.plan import Cell, Planned
 from evoframe.study.pool import End
 

@@ -16,11 +16,11 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
-from evoframe.evaluation import Score
-from evoframe.jobs import read_job
-from evoframe.layers import Layer
-from evoframe.verification import Finding, Verification
-from evoframe.verify import keep_of_job, verify_job
+from evoframe.config.layers import Layer
+from evoframe.designs.sources import read_job
+from evoframe.designs.verifying import keep_of_job, verify_job
+from evoframe.evolution.evaluation import Score
+from evoframe.record.verification import Finding, Verification
 
 __all__ = ["verification_table", "verify"]
 

@@ -15,10 +15,10 @@ import attrs
 import tomli_w
 
 from evoframe.errors import InputError
-from evoframe.files import read_text
-from evoframe.locking import held_after_others
-from evoframe.provenance import differences
-from evoframe.store import is_leftover, write_atomically
+from evoframe.files.locks import held_after_others
+from evoframe.files.reading import read_text
+from evoframe.record.provenance import differences
+from evoframe.record.store import is_leftover, write_atomically
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.progress import REMEDY, Status, forget_failure, note_failure, status

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 
 import attrs
 
-from evoframe.loading import load_run
-from evoframe.run import assemble
+from evoframe.record.run import load_run
+from evoframe.runs.execution import assemble
 from evoframe.study.plan import Planned
 
 __all__ = ["Estimate", "estimated"]

@@ -14,13 +14,13 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.coevolution import first_meetings
-from evoframe.config import RunConfig
+from evoframe.config.layers import Layer, Layers, Tree, layer_of, read_layers
+from evoframe.config.resolve import resolved
+from evoframe.contract.config import RunConfig
+from evoframe.documents.structuring import found
 from evoframe.errors import ConfigurationError
-from evoframe.layers import Layer, Layers, Tree, layer_of, read_layers
-from evoframe.plugins import Plugins, suggestion
-from evoframe.resolve import resolved
-from evoframe.structuring import found
+from evoframe.evolution.coevolution import first_meetings
+from evoframe.registry.registry import Plugins, suggestion
 from evoframe.study.names import headings
 
 __all__ = ["Cell", "Planned", "Study", "read_study", "shown", "study_names"]
@@ -150,7 +150,7 @@ class Study:
 
 def study_names() -> list[str]:
     """Return the names of the studies that come with evoframe."""
-    entries = files("evoframe").joinpath("studies").iterdir()
+    entries = files("evoframe.study").joinpath("studies").iterdir()
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
 
@@ -184,7 +184,7 @@ def read_study(source: str | Path, overrides: Iterable[str | Layer], plugins: Pl
 
 def _file_of(source: str | Path) -> str | Path:
     if source in study_names():
-        with_path: Any = files("evoframe").joinpath("studies", f"{source}.toml")
+        with_path: Any = files("evoframe.study").joinpath("studies", f"{source}.toml")
         return str(with_path)
     if not str(source).endswith(".toml") and not Path(source).exists():
         known = study_names()

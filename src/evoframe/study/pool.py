@@ -13,8 +13,8 @@ import attrs
 import pebble
 
 from evoframe.errors import EvoframeError, LockedError
-from evoframe.processes import WorkerProcesses
 from evoframe.study.worker import Order, Talk, perform
+from evoframe.workers.processes import WorkerProcesses
 
 __all__ = ["End", "News", "Pool", "end_of"]
 

@@ -10,11 +10,11 @@ from typing import Literal, TypeAlias
 import attrs
 
 from evoframe.errors import InputError, LockedError
-from evoframe.files import read_text
-from evoframe.loading import has_begun, load_run
-from evoframe.locking import held
-from evoframe.resuming import is_verified
-from evoframe.store import CONFIG_FILE, write_json
+from evoframe.files.locks import held
+from evoframe.files.reading import read_text
+from evoframe.record.run import has_begun, load_run
+from evoframe.record.store import CONFIG_FILE, write_json
+from evoframe.runs.resuming import is_verified
 from evoframe.study.plan import Planned
 
 __all__ = ["FAILURE_FILE", "REMEDY", "Status", "forget_failure", "note_failure", "status"]

@@ -14,9 +14,9 @@ from typing import Any, TypeVar
 import attrs
 
 from evoframe.errors import InputError
-from evoframe.files import read_text
-from evoframe.loading import Run, load_run
-from evoframe.store import CHAMPION_FILE, write_atomically
+from evoframe.files.reading import read_text
+from evoframe.record.run import Run, load_run
+from evoframe.record.store import CHAMPION_FILE, write_atomically
 from evoframe.study.plan import Planned, shown
 
 __all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "score_curve", "write_rows"]

@@ -10,19 +10,19 @@ from typing import Any
 
 import attrs
 
-from evoframe.config import RunConfig
-from evoframe.discovery import discover
+from evoframe.config.layers import Layer, Layers, layer_of
+from evoframe.config.resolve import resolved
+from evoframe.contract.config import RunConfig
+from evoframe.contract.values import Turn
 from evoframe.errors import InputError, LockedError, NotEmptyError, OccupiedError
-from evoframe.hookspecs import hookimpl
-from evoframe.layers import Layer, Layers, layer_of
-from evoframe.observers import Observers
-from evoframe.plugins import Plugins
-from evoframe.resolve import resolved
-from evoframe.resuming import is_finished, reopen, verify_if_missing
-from evoframe.run import Execution, prepare
-from evoframe.store import CONFIG_FILE
+from evoframe.record.store import CONFIG_FILE
+from evoframe.registry.discovery import discover
+from evoframe.registry.hookspecs import hookimpl
+from evoframe.registry.observers import Observers
+from evoframe.registry.registry import Plugins
+from evoframe.runs.execution import Execution, prepare
+from evoframe.runs.resuming import is_finished, reopen, verify_if_missing
 from evoframe.study.progress import REMEDY
-from evoframe.values import Turn
 
 __all__ = ["INTERVAL", "Order", "Talk", "perform"]
 

@@ -1,4 +1,4 @@
-"""Contract tests that authors of plugins subclass: the laws of :mod:`evoframe.protocols`, one test each.
+"""Contract tests that authors of plugins subclass: the laws of :mod:`evoframe.contract`, one test each.
 
 .. code-block:: python
 

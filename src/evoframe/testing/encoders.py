@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.protocols import Encoder, Network
+from evoframe.contract.protocols import Encoder, Network
+from evoframe.contract.values import Design
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, random_network, same_arrays
-from evoframe.values import Design
 
 __all__ = ["EncoderContract"]
 

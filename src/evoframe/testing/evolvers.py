@@ -15,8 +15,8 @@ import pytest
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from evoframe.drawings import NetworkGraph
-from evoframe.protocols import Evolver, EvolverRun
+from evoframe.contract.drawings import NetworkGraph
+from evoframe.contract.protocols import Evolver, EvolverRun
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, global_random_state_untouched, refusal, same_bits
 

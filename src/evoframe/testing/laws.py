@@ -13,10 +13,10 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import SearchStrategy
 
-from evoframe.drawings import GeometryPart
+from evoframe.contract.drawings import GeometryPart
+from evoframe.contract.protocols import Network
+from evoframe.contract.values import Outcome
 from evoframe.errors import ConfigurationError
-from evoframe.protocols import Network
-from evoframe.values import Outcome
 
 __all__ = [
     "accepted",

@@ -7,10 +7,10 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.protocols import Objective
+from evoframe.contract.protocols import Objective
+from evoframe.contract.values import Outcome, Record
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, same_outcome
-from evoframe.values import Outcome, Record
 
 __all__ = ["ObjectiveContract"]
 

@@ -10,15 +10,15 @@ import attrs
 import numpy as np
 import pytest
 
-from evoframe.drawings import Geometry, can_be_drawn
+from evoframe.contract.drawings import Geometry, can_be_drawn
+from evoframe.contract.protocols import Simulator
+from evoframe.contract.values import Design, Export, Outcome, Record, Variant
+from evoframe.designs.exporting import export_design, formats_of
 from evoframe.errors import ConfigurationError
-from evoframe.exporting import export_design, formats_of
-from evoframe.measurement import can_draw, can_publish
-from evoframe.protocols import Simulator
+from evoframe.record.verification import UNCHANGED, can_verify
+from evoframe.robustness.measurement import can_draw, can_publish
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import assert_is_mesh, same_arrays, same_outcome
-from evoframe.values import Design, Export, Outcome, Record, Variant
-from evoframe.verification import UNCHANGED, can_verify
 
 __all__ = ["SimulatorContract"]
 

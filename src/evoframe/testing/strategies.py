@@ -9,10 +9,10 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from evoframe.protocols import CollaborationStrategy
+from evoframe.contract.protocols import CollaborationStrategy
+from evoframe.contract.values import Member
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import accepted, for_all, global_random_state_untouched, refusal
-from evoframe.values import Member
 
 __all__ = ["CollaborationStrategyContract"]
 

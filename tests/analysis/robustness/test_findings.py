@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from measuring import measure
 
 from evoframe import Robustness
-from evoframe.analysis.corrections import CORRECTIONS, Correction
 from evoframe.analysis.robustness import conclusions, find
 from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
+from evoframe.analysis.statistics.corrections import CORRECTIONS, Correction
 
 
 def lifted(measured: Robustness, step: float) -> Robustness:

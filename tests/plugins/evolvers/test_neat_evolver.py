@@ -14,8 +14,8 @@ from processes import python
 
 from evoframe.testing import EvolverContract
 from evoframe_evolvers import Neat, evoframe_evolvers
-from evoframe_evolvers.documents import dump_genome
-from evoframe_evolvers.genomes import GenePool
+from evoframe_evolvers.cppn.documents import dump_genome
+from evoframe_evolvers.cppn.genomes import GenePool
 from evoframe_evolvers.neat_evolver import _selection
 
 

@@ -6,7 +6,7 @@ from evoframe.analysis.robustness.section import RobustnessPart, robustness_part
 from evoframe.analysis.robustness.tables import groups_table
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.measurement_files import read_robustness
+from evoframe.robustness.files import read_robustness
 
 __all__ = [
     "Findings",

@@ -8,12 +8,12 @@ from typing import Any
 
 import pandas as pd
 
+from evoframe.analysis.output.writing import prepare_directory, write_bytes, write_figure, write_table
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.analysis.writing import prepare_directory, write_bytes, write_figure, write_table
-from evoframe.measurement_files import document_of, write_measurement
+from evoframe.robustness.files import document_of, write_measurement
 
 __all__ = ["as_json", "records", "write_findings", "write_robustness"]
 

@@ -8,10 +8,10 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.analysis.blocks import BlockComparison, compare_blocks
-from evoframe.analysis.corrections import Correction
-from evoframe.analysis.statistics import Comparison, compare
-from evoframe.measurement import Robustness
+from evoframe.analysis.statistics.blocks import BlockComparison, compare_blocks
+from evoframe.analysis.statistics.corrections import Correction
+from evoframe.analysis.statistics.groups import Comparison, compare
+from evoframe.robustness.measurement import Robustness
 
 __all__ = ["Findings", "find"]
 

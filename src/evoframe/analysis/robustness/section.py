@@ -7,17 +7,17 @@ from pathlib import Path
 
 import attrs
 
-from evoframe.analysis.corrections import Correction
-from evoframe.analysis.page import Block, Picture, Section, Words
+from evoframe.analysis.output.writing import Rendered, rendered
+from evoframe.analysis.page.page import Block, Picture, Section, Words
 from evoframe.analysis.robustness.findings import find
 from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.analysis.writing import Rendered, rendered
-from evoframe.files import is_file, shown_name
-from evoframe.measurement import Robustness
-from evoframe.measurement_files import SETTING_FILE, read_robustness
-from evoframe.plugins import Plugins
-from evoframe.robustness import Measurable, measurable
+from evoframe.analysis.statistics.corrections import Correction
+from evoframe.files.reading import is_file, shown_name
+from evoframe.registry.registry import Plugins
+from evoframe.robustness.api import Measurable, measurable
+from evoframe.robustness.files import SETTING_FILE, read_robustness
+from evoframe.robustness.measurement import Robustness
 
 __all__ = ["RobustnessPart", "robustness_part"]
 

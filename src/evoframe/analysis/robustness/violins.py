@@ -11,10 +11,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from evoframe.analysis.plain import plain
-from evoframe.analysis.printed import COLOURS, COLUMN, broken, row_height
-from evoframe.analysis.units import factor_of
-from evoframe.measurement import Robustness
+from evoframe.analysis.data.units import factor_of
+from evoframe.analysis.figures.plain import plain
+from evoframe.analysis.figures.printed import COLOURS, COLUMN, broken, row_height
+from evoframe.robustness.measurement import Robustness
 
 __all__ = ["violins"]
 

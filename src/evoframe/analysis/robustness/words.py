@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from evoframe.analysis.blocks import BlockComparison, BlockPair
-from evoframe.analysis.pairs import oriented
 from evoframe.analysis.robustness.findings import Findings
-from evoframe.analysis.statistics import Comparison
-from evoframe.analysis.words import conclusion, corrected, counted, in_words, listed
-from evoframe.measurement import Robustness
+from evoframe.analysis.statistics.blocks import BlockComparison, BlockPair
+from evoframe.analysis.statistics.groups import Comparison
+from evoframe.analysis.statistics.pairs import oriented
+from evoframe.analysis.statistics.words import conclusion, corrected, counted, in_words, listed
+from evoframe.robustness.measurement import Robustness
 
 __all__ = ["conclusions"]
 

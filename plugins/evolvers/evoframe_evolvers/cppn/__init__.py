@@ -1,0 +1,1 @@
+"""Genomes that encode CPPNs: representation, documents, graphs and random streams."""

@@ -1,0 +1,243 @@
+"""neat-python's genomes: their configuration from typed options, and what a population of them shares."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from configparser import ConfigParser
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NoReturn, TypeAlias
+
+import attrs
+import neat
+import numpy as np
+from neat.innovation import InnovationTracker
+
+from evoframe_evolvers.cppn.checked import entry, rows, whole
+from evoframe_evolvers.cppn.documents import express, load_genome
+from evoframe_evolvers.cppn.options import GeneOptions, GenomeOptions
+from evoframe_evolvers.cppn.randomness import PrivateStream
+from evoframe_libcppn import CppnNetwork
+
+__all__ = ["NO_SELECTION", "Counter", "GenePool", "Sections", "neat_sections"]
+
+
+@attrs.define
+class Counter:
+    """Counts up like :func:`itertools.count`, but its value can be read and set."""
+
+    value: int
+
+    def __iter__(self) -> Counter:
+        return self
+
+    def __next__(self) -> int:
+        self.value += 1
+        return self.value - 1
+
+
+Sections: TypeAlias = Mapping[str, Mapping[str, Any]]
+"""Section of neat-python's configuration -> key -> value."""
+
+NO_SELECTION: Sections = {
+    "DefaultGenome": {
+        "compatibility_disjoint_coefficient": 0.0,
+        "compatibility_weight_coefficient": 0.0,
+    },
+    "DefaultSpeciesSet": {"compatibility_threshold": 0.0},
+    "DefaultStagnation": {},
+    "DefaultReproduction": {},
+}
+"""What neat-python asks for even where it selects nothing."""
+
+
+class GenePool:
+    """Where the genomes of one population come from.
+
+    It owns neat-python's ``Config`` of the population, the counters that neat-python's objects draw on, and
+    the random stream. The config must not be serialized or copied, for that advances its node counter: save
+    :meth:`state` instead.
+
+    Attributes:
+        inputs: Number of inputs of a network.
+        outputs: Number of outputs of a network.
+        config: neat-python's configuration, of this population only.
+        genome_ids: The ids that genomes will get.
+        node_ids: The ids that hidden nodes will get; neat-python starts them after the outputs.
+        tracker: The innovation numbers of connections.
+        stream: The random stream.
+    """
+
+    def __init__(
+        self,
+        options: GenomeOptions,
+        selection: Sections,
+        inputs: int,
+        outputs: int,
+        rng: np.random.Generator,
+    ) -> None:
+        self.inputs = inputs
+        self.outputs = outputs
+        self.config = _neat_config(neat_sections(options, selection, inputs, outputs))
+        self.genome_ids = Counter(1)
+        self.node_ids = Counter(outputs)
+        self.tracker = InnovationTracker()
+        self.stream = PrivateStream(rng)
+        self.config.genome_config.node_indexer = self.node_ids
+        self.config.genome_config.innovation_tracker = self.tracker
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a population cannot be copied or serialized; use state() and restore()")
+
+    def express(self, genome: Any) -> CppnNetwork:
+        """Return the network that *genome* encodes."""
+        return express(genome, self.inputs, self.outputs)
+
+    def load(self, saved: Any) -> Any:
+        """Return the genome that :func:`dump_genome` made *saved* of.
+
+        Raises:
+            ValueError: It is no genome, or none that fits this population.
+        """
+        genome = load_genome(saved)
+        self.express(genome)
+        return genome
+
+    def state(self) -> dict[str, Any]:
+        """Return everything but genomes as JSON values."""
+        innovations = self.tracker.generation_innovations
+        return {
+            "inputs": self.inputs,
+            "outputs": self.outputs,
+            "next_genome": self.genome_ids.value,
+            "next_node": self.node_ids.value,
+            "innovation": self.tracker.global_counter,
+            "innovations": [[*change, number] for change, number in innovations.items()],
+            "random": self.stream.state(),
+        }
+
+    def restore(self, state: Any, genomes: Collection[Any]) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Args:
+            state: The saved state.
+            genomes: The genomes that were in use then; none of their ids may be given again.
+
+        Raises:
+            ValueError: It is no such state; the pool stays as it is.
+        """
+        shape = whole(state, "inputs"), whole(state, "outputs")
+        if shape != (self.inputs, self.outputs):
+            raise ValueError(
+                f"expected networks of {(self.inputs, self.outputs)} inputs and outputs, got {shape}"
+            )
+        used_nodes = [key for genome in genomes for key in genome.nodes]
+        genome_id = whole(state, "next_genome", 1 + max(genome.key for genome in genomes))
+        node_id = whole(state, "next_node", max(self.outputs, 1 + max(used_nodes)))
+        innovation = whole(state, "innovation", 0)
+        innovations = dict(map(_load_innovation, rows(state, "innovations", 4)))
+        self.stream.restore(entry(state, "random", list))
+        self.genome_ids.value, self.node_ids.value = genome_id, node_id
+        self.tracker.global_counter = innovation
+        self.tracker.generation_innovations = innovations
+
+
+def _load_innovation(saved: list[Any]) -> tuple[tuple[int, int, str], int]:
+    source, target, change, innovation = saved
+    if not all(isinstance(value, int) for value in (source, target, innovation)) or not isinstance(
+        change, str
+    ):
+        raise ValueError(f"not an innovation: {saved}")
+    return (source, target, change), innovation
+
+
+def _neat_config(sections: Sections) -> Any:
+    """Return neat-python's configuration, which it only reads from an ini file."""
+    parser = ConfigParser()
+    parser.read_dict(sections)
+    with TemporaryDirectory(prefix="evoframe-neat-") as folder:
+        path = Path(folder, "neat.ini")
+        with path.open("w", encoding="utf-8") as file:
+            parser.write(file)
+        return neat.Config(
+            neat.DefaultGenome, neat.DefaultReproduction, neat.DefaultSpeciesSet, neat.DefaultStagnation, path
+        )
+
+
+def neat_sections(options: GenomeOptions, selection: Sections, inputs: int, outputs: int) -> Sections:
+    """Return all that is written for neat-python, which says nothing of a key that it does not know."""
+    return {
+        **selection,
+        "NEAT": {
+            "pop_size": 1,  # the evolver says at each call how many
+            "fitness_criterion": "max",
+            "fitness_threshold": 0.0,
+            "no_fitness_termination": True,
+            "reset_on_extinction": True,
+        },
+        "DefaultGenome": {
+            **selection["DefaultGenome"],
+            "num_inputs": inputs,
+            "num_outputs": outputs,
+            **_fixed_keys(),
+            **_option_keys(options),
+        },
+    }
+
+
+def _option_keys(options: GenomeOptions) -> Mapping[str, Any]:
+    return {
+        "conn_add_prob": options.connection_add,
+        "conn_delete_prob": options.connection_delete,
+        "node_add_prob": options.node_add,
+        "node_delete_prob": options.node_delete,
+        "activation_options": " ".join(options.activations),
+        "activation_mutate_rate": options.activation_mutate_rate,
+        "enabled_mutate_rate": options.enabled_mutate_rate,
+        **_number_keys("bias", options.bias),
+        **_number_keys("weight", options.weight),
+    }
+
+
+def _fixed_keys() -> Mapping[str, Any]:
+    return {
+        "num_hidden": 0,
+        "feed_forward": True,
+        "initial_connection": "full_direct",
+        "single_structural_mutation": False,
+        "structural_mutation_surer": False,
+        "activation_default": "random",
+        "aggregation_default": "sum",
+        "aggregation_options": "sum",
+        "aggregation_mutate_rate": 0.0,
+        "enabled_default": True,
+        "enabled_rate_to_true_add": 0.0,
+        "enabled_rate_to_false_add": 0.0,
+        **_number_keys("response", _fixed_at(1.0)),
+        **_number_keys("time_constant", _fixed_at(1.0)),
+    }
+
+
+def _fixed_at(value: float) -> GeneOptions:
+    return GeneOptions(
+        init_mean=value,
+        init_stdev=0.0,
+        minimum=value,
+        maximum=value,
+        mutate_power=0.0,
+        mutate_rate=0.0,
+        replace_rate=0.0,
+    )
+
+
+def _number_keys(name: str, options: GeneOptions) -> Mapping[str, Any]:
+    return {
+        f"{name}_init_type": "gaussian",
+        f"{name}_init_mean": options.init_mean,
+        f"{name}_init_stdev": options.init_stdev,
+        f"{name}_min_value": options.minimum,
+        f"{name}_max_value": options.maximum,
+        f"{name}_mutate_power": options.mutate_power,
+        f"{name}_mutate_rate": options.mutate_rate,
+        f"{name}_replace_rate": options.replace_rate,
+    }

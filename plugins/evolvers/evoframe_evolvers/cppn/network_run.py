@@ -1,0 +1,75 @@
+"""What evolvers of networks share while they run: everything but how the next generation comes about."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe import Member, Network
+from evoframe_evolvers.cppn.checked import entry
+from evoframe_evolvers.cppn.cohort import Cohort
+from evoframe_evolvers.cppn.documents import dump_genome
+from evoframe_evolvers.cppn.genomes import GenePool
+
+__all__ = ["NetworkRun"]
+
+
+class NetworkRun(ABC):
+    """An evolver at work on the genomes of a pool; a subclass sets pool, size and first cohort."""
+
+    _pool: GenePool
+    _cohort: Cohort
+    _size: int
+
+    @abstractmethod
+    def _succeed(self) -> None:
+        """Replace the cohort, of which the fitness is known, by the next generation."""
+
+    def _species(self, genome_id: int) -> int | None:  # noqa: ARG002
+        """Return the species of a genome, if there are any."""
+        return None
+
+    def ask(self) -> Sequence[Any]:
+        """Return the genomes to evaluate: first the initial ones, later those that follow."""
+        if self._cohort.finished:
+            self._succeed()
+        return self._cohort.ask()
+
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:  # noqa: ARG002
+        """Take the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
+        self._cohort.tell(fitness)
+
+    def genomes(self) -> Sequence[Any]:
+        """Return the genomes of :meth:`members`; after :meth:`restore` nobody else has them."""
+        return list(self._cohort.genomes.values())
+
+    def members(self) -> Sequence[Member]:
+        """Return the current members, in the order of the last :meth:`ask`."""
+        return self._cohort.members(self._species)
+
+    def express(self, genome: Any) -> Network:
+        """Return the network that *genome* encodes."""
+        return self._pool.express(genome)
+
+    def dump(self, genome: Any) -> Any:
+        """Return *genome* as JSON values."""
+        return dump_genome(genome)
+
+    def _saved_cohort(self, state: Any, evolver: str) -> Cohort:
+        """Return the cohort of a saved state, which must be one of this *evolver*."""
+        saved = entry(state, "evolver", str)
+        if saved != evolver:
+            raise ValueError(f"the state is one of '{saved}', not of '{evolver}'")
+        return Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
+
+    @abstractmethod
+    def state(self) -> Any:
+        """Return everything needed to continue, as JSON values."""
+
+    @abstractmethod
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned."""

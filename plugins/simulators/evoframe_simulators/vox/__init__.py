@@ -1,0 +1,1 @@
+"""The simulator ``vox``: the Python face of the voxel solver libvox."""

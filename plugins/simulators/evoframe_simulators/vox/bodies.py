@@ -1,0 +1,121 @@
+"""Bodies as arrays: what they may be, and how they are read from ``.npz`` files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe import CONTROLLER, EMPTY, MORPHOLOGY, Design, InputError
+from evoframe_simulators.npz import PackedArray, open_npz
+from evoframe_simulators.vox.materials import PaletteMaterial, described
+
+__all__ = ["MOST_CELLS", "check_codes", "check_cycles", "check_design", "read_bodies"]
+
+MOST_CELLS = 2**24
+"""Of a canvas; more would not fit into the solver, either."""
+
+_MOST_CYCLES = 1e6  # beyond, single precision knows no fraction of a cycle
+
+
+def check_design(design: Design) -> None:
+    """Refuse a design that is no body with a controller; what its cells hold is checked by the solver.
+
+    Raises:
+        InputError: Says what is wrong with its arrays.
+    """
+    material, phase = design.roles[MORPHOLOGY], design.roles[CONTROLLER]
+    if material.ndim != 3 or material.dtype != np.uint8:
+        raise InputError(f"morphology is {_described(material)}; expected uint8[X, Y, Z]")
+    if phase.shape != material.shape or phase.dtype != np.float64:
+        raise InputError(f"controller is {_described(phase)}; expected float64{list(material.shape)}")
+
+
+def _described(array: NDArray[Any]) -> str:
+    return f"{array.dtype}{list(array.shape)}"
+
+
+def check_codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]) -> None:
+    """Refuse bodies with a cell that is neither empty nor of one of the materials.
+
+    Raises:
+        InputError: Says which code was found, and what there is.
+    """
+    wrong = material[~np.isin(material, (EMPTY, *materials))]
+    if wrong.size:
+        raise InputError(f"material has the code {wrong[0]}; codes: {described(materials)}")
+
+
+def check_cycles(cycles: NDArray[np.float64], name: str) -> None:
+    """Refuse phase offsets that are not finite, or too large to have a fraction.
+
+    Raises:
+        InputError: Says what was found under this name.
+    """
+    if not np.isfinite(cycles).all():
+        raise InputError(f"{name} has a value that is not finite")
+    largest = float(np.abs(cycles).max(initial=0.0))
+    if largest > _MOST_CYCLES:
+        raise InputError(f"{name} has the value {largest:g}; at most {_MOST_CYCLES:g} cycles")
+
+
+def read_bodies(
+    path: Path, materials: Mapping[int, PaletteMaterial]
+) -> list[tuple[str, NDArray[np.uint8], NDArray[np.float64]]]:
+    """Return label, material and phase offsets (in cycles) of each body of a file.
+
+    Args:
+        path: An ``.npz`` file.
+        materials: What a cell may be made of.
+
+    Raises:
+        InputError: The file cannot be read, or its arrays are not bodies; says what is wrong.
+    """
+    try:
+        with open_npz(path, ("material", "phase_cycles")) as (material, phase):
+            _check_material(material)
+            _check_phase(phase, material.shape)
+            codes, cycles = _codes(material.unpack(), materials), _cycles(phase.unpack())
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    if codes.ndim == 3:
+        return [(path.name, codes, cycles)]
+    return [(f"{path.name}[{n}]", *body) for n, body in enumerate(zip(codes, cycles, strict=True))]
+
+
+def _check_material(material: PackedArray) -> None:
+    shape = list(material.shape)
+    if len(shape) not in (3, 4) or min(shape) < 1:
+        raise InputError(f"material has the shape {shape}; expected [X, Y, Z] or [N, X, Y, Z]")
+    if math.prod(shape) > MOST_CELLS:
+        raise InputError(f"material has the shape {shape}, {math.prod(shape)} cells; at most {MOST_CELLS}")
+    if material.dtype.kind not in "ui":
+        raise InputError(f"material has the type {material.dtype}; expected whole numbers")
+
+
+def _check_phase(phase: PackedArray, shape: tuple[int, ...]) -> None:
+    if phase.shape != shape:
+        raise InputError(f"phase_cycles has the shape {list(phase.shape)}, but material has {list(shape)}")
+    if phase.dtype.kind not in "uif":
+        raise InputError(f"phase_cycles has the type {phase.dtype}; expected numbers")
+
+
+def _codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]) -> NDArray[np.uint8]:
+    check_codes(material, materials)
+    without = np.flatnonzero(~material.any(axis=(-3, -2, -1)))
+    if without.size:
+        raise InputError(f"material: body {without[0]} has no voxel")
+    return material.astype(np.uint8)
+
+
+def _cycles(phase: NDArray[Any]) -> NDArray[np.float64]:
+    with np.errstate(all="ignore"):  # what double precision cannot hold becomes infinite
+        cycles: NDArray[np.float64] = phase.astype(np.float64)
+    check_cycles(cycles, "phase_cycles")
+    return cycles

@@ -1,0 +1,153 @@
+"""What figures and pages draw of a body: the surfaces of its materials, and how they move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe import EMPTY, MORPHOLOGY, Design, Geometry, GeometryPart, InputError, Outcome, Record
+from evoframe_simulators.vox.bodies import check_codes, check_design
+from evoframe_simulators.vox.materials import PaletteMaterial, materials_of
+from evoframe_simulators.vox.models import clocks_of, model_of
+from evoframe_simulators.vox.tracks import POINTS
+
+if TYPE_CHECKING:
+    from evoframe_simulators.vox.simulator import Vox
+
+__all__ = ["geometry"]
+
+# Red contracts and blue does not: of the vibrant colours of Paul Tol, made for eyes of all kinds.
+_CONTRACTILE = ("#CC3311", "#EE3377", "#EE7733")
+_PASSIVE = ("#0077BB", "#33BBEE", "#009988")
+_TRANSLUCENT = 0.12
+
+_SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))  # counter-clockwise
+
+Cells = NDArray[np.bool_]
+
+
+def geometry(vox: Vox, design: Design, frames: int) -> Geometry:
+    """Return the surfaces of a body: one part for each material, and for an enclosure if there is one.
+
+    Voxels are drawn as cubes at rest. Later a corner is displaced by the mean displacement of the voxels
+    that it belongs to, so that the surface has no gaps; that a voxel at the surface swells is not seen. An
+    enclosure is an outermost layer of the canvas that is of one passive material throughout.
+
+    Args:
+        vox: Simulates the body.
+        design: The body with its controller.
+        frames: How many at most; they are as evenly spread over the steps as these allow.
+
+    Raises:
+        InputError: The design is no body with a controller, or has no voxel.
+        ValueError: *frames* is not positive.
+    """
+    if frames < 1:
+        raise ValueError(f"expected 1 frame or more, found {frames}")
+    check_design(design)
+    material = design.roles[MORPHOLOGY]
+    check_codes(material, materials_of(vox))
+    if not material.any():
+        raise InputError("morphology has no voxel, so there is nothing to draw")
+    outcome = _simulated(vox, design, frames)
+    sound = outcome.steps < (np.inf if outcome.diverged_at is None else outcome.diverged_at)
+    corners = _corners(outcome.tracks["voxels"][sound], vox.voxel_size)
+    return Geometry(
+        times=outcome.times[sound],
+        parts=tuple(_parts(material, materials_of(vox), corners)),
+        tracks={name: outcome.tracks[name][sound] for name in POINTS},
+    )
+
+
+def _simulated(vox: Vox, design: Design, frames: int) -> Outcome:
+    material = design.roles[MORPHOLOGY]
+    x, y, z = material.shape
+    [clock] = clocks_of(vox, model_of(vox, (x, y, z)), material[None])
+    steps = np.linspace(0, clock.steps, frames).round().astype(int) if frames > 1 else np.zeros(1, int)
+    samples = tuple(np.unique(steps[steps > 0] - 1).tolist())
+    [outcome] = vox.simulate([design], Record(("voxels", *POINTS), samples=samples, initial=True))
+    return outcome
+
+
+def _corners(voxels: NDArray[np.float64], size: float) -> NDArray[np.float64]:
+    """Return where the corners of all cells are, ``float64[frames, X + 1, Y + 1, Z + 1, 3]``.
+
+    Args:
+        voxels: Where the voxels are, ``float64[frames, X, Y, Z, 3]``, NaN in empty cells.
+        size: Edge of a voxel, m.
+    """
+    present = np.isfinite(voxels[0, ..., 0])
+    first = np.argwhere(present)[0]
+    origin = voxels[0][tuple(first)] - (first + 0.5) * size
+    lattice = np.stack(np.meshgrid(*(np.arange(n + 1.0) for n in present.shape), indexing="ij"), axis=-1)
+    moved = np.where(present[..., None], voxels - voxels[0], 0.0)
+    around = _of_corners(present[None, ..., None].astype(np.float64))
+    corners: NDArray[np.float64] = origin + lattice * size + _of_corners(moved) / np.maximum(around, 1.0)
+    return corners
+
+
+def _of_corners(cells: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return for each corner the sum of the cells around it; ``[frames, X, Y, Z, k]`` with one cell more."""
+    padded = np.pad(cells, ((0, 0), (1, 1), (1, 1), (1, 1), (0, 0)))
+    for axis in (1, 2, 3):
+        size = padded.shape[axis]
+        padded = padded.take(range(size - 1), axis) + padded.take(range(1, size), axis)
+    return padded
+
+
+def _parts(
+    material: NDArray[np.uint8], materials: Mapping[int, PaletteMaterial], corners: NDArray[np.float64]
+) -> Iterator[GeometryPart]:
+    enclosing = _enclosure(material, materials)
+    opaque = (material != EMPTY) & ~enclosing
+    reds, blues = iter(_CONTRACTILE * 100), iter(_PASSIVE * 100)
+    for code, made_of in materials.items():
+        colour = next(reds if made_of.expansion_coefficient else blues)
+        faces = _faces(opaque & (material == code), opaque)
+        if faces.size:
+            yield _part(made_of.name or f"material {code}", colour, 1.0, faces, corners)
+    if enclosing.any():
+        faces = _faces(enclosing, material != EMPTY)
+        yield _part("enclosure", _PASSIVE[0], _TRANSLUCENT, faces, corners)
+
+
+def _enclosure(material: NDArray[np.uint8], materials: Mapping[int, PaletteMaterial]) -> Cells:
+    """Return which cells enclose the others; none if there is no enclosure."""
+    outermost = np.ones(material.shape, np.bool_)
+    outermost[1:-1, 1:-1, 1:-1] = False
+    codes = set(material[outermost].tolist())
+    is_one = len(codes) == 1 and EMPTY not in codes and not outermost.all()
+    if is_one and materials[codes.pop()].expansion_coefficient == 0.0:
+        return outermost
+    return np.zeros_like(outermost)
+
+
+def _faces(cells: Cells, hiding: Cells) -> NDArray[np.int64]:
+    """Return the faces of cells that no other cell hides, as indices of corners, ``int64[m, 4]``."""
+    corners = np.arange(np.prod(np.array(cells.shape) + 1)).reshape(np.array(cells.shape) + 1)
+    padded = np.pad(hiding, 1)
+    found = []
+    for axis in range(3):
+        for side in (0, 1):
+            beside = np.roll(padded, 1 - 2 * side, axis)[1:-1, 1:-1, 1:-1]
+            at = np.argwhere(cells & ~beside)
+            square = [np.insert(offset, axis, side) for offset in _around(axis)]
+            quads = np.stack([corners[tuple((at + offset).T)] for offset in square], axis=1)
+            found.append(quads if side else quads[:, ::-1])
+    return np.concatenate(found)
+
+
+def _around(axis: int) -> list[tuple[int, int]]:
+    """Return the corners of a face across an axis, counter-clockwise as seen from its greater side."""
+    return [(second, first) if axis == 1 else (first, second) for first, second in _SQUARE]
+
+
+def _part(
+    name: str, colour: str, opacity: float, faces: NDArray[np.int64], corners: NDArray[np.float64]
+) -> GeometryPart:
+    used, places = np.unique(faces, return_inverse=True)
+    vertices = corners.reshape(len(corners), -1, 3)[:, used]
+    return GeometryPart(name, colour, opacity, vertices, places.reshape(faces.shape).astype(np.int64))

@@ -1,0 +1,31 @@
+"""The bodies that others have published, as ``evoframe robustness --published`` compares them.
+
+They stand in ``published_sams.json`` beside this module: the soft actuator morphologies of Alcaraz-Herrera
+et al. (arXiv 2408.09107), from their repository biomeld-catheter-controller, licensed under Apache-2.0. Each
+body is a list of layers from the lowest z up; within a layer x runs fastest, then y.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from importlib.resources import files
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["published_bodies"]
+
+
+@functools.cache
+def published_bodies() -> dict[str, NDArray[np.uint8]]:
+    """Return label -> material, ``uint8[20, 8, 8]`` with the codes of the paper, for each published body."""
+    text = files("evoframe_simulators.vox").joinpath("published_sams.json").read_text(encoding="utf-8")
+    document = json.loads(text)
+    x, y, z = document["canvas"]
+    return {label: _material(layers, (z, y, x)) for label, layers in document["sams"].items()}
+
+
+def _material(layers: list[str], shape: tuple[int, int, int]) -> NDArray[np.uint8]:
+    codes = np.array([int(code) for layer in layers for code in layer], dtype=np.uint8)
+    return np.ascontiguousarray(codes.reshape(shape).T)

@@ -1,0 +1,66 @@
+"""The regions of a VXA file in which voxels are held."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from evoframe import InputError
+from evoframe_simulators.vox.regions import DEGREES_OF_FREEDOM, FixedRegion
+from evoframe_simulators.vox.vxa.cells import Lattice, as_engine_holds
+from evoframe_simulators.vox.vxa.document import shown
+from evoframe_simulators.vox.vxa.file import SHAPES
+from evoframe_simulators.vox.vxa.sections import Refusals, Section
+
+__all__ = ["regions_in"]
+
+_ALL = 2 ** len(DEGREES_OF_FREEDOM) - 1
+_OLDER = {"Fixed_Regions": "NumFixed", "Forced_Regions": "NumForced"}
+
+
+def regions_in(environment: Section, lattice: Lattice, refusals: Refusals) -> tuple[FixedRegion, ...]:
+    """Return the regions that hold cells, those of older files too; the others are inert and left out.
+
+    Each holds the cells that it holds in the engine (see :mod:`~evoframe_simulators.vox.vxa.cells`).
+
+    Args:
+        environment: Has them in ``Boundary_Conditions``, or in ``Fixed_Regions`` and ``Forced_Regions``.
+        lattice: The cells.
+        refusals: Where regions are noted that are no boxes.
+
+    Raises:
+        InputError: Their number is not what is said, or one of them is none.
+    """
+    newer = environment.find("Boundary_Conditions")
+    older = [(environment.find(tag), counted) for tag, counted in _OLDER.items()]
+    if newer is None:
+        found = [region for section, counted in older for region in _listed(section, counted)]
+    else:
+        found = list(_listed(newer, "NumBCs"))
+        beside = [section for section, counted in older if any(_listed(section, counted))]
+        for section in beside:  # which the engine does not read then
+            refusals.add(section.place if section else "", "regions", "beside Boundary_Conditions")
+    boxes = [_box(region, refusals) for region in found]
+    holding = [box for box in boxes if box is not None and box.degrees_of_freedom]
+    held = [as_engine_holds(box, lattice) for box in holding]
+    return tuple(box for box in held if box is not None)
+
+
+def _listed(section: Section | None, counted: str) -> Iterator[Section]:
+    if section is None:
+        return
+    said, there = section.whole(counted, 0), section.count("FRegion")
+    if said != there:
+        raise InputError(f"{section.at(counted)} is {said}, but there are {there} FRegion")
+    yield from section.all("FRegion")
+
+
+def _box(region: Section, refusals: Refusals) -> FixedRegion | None:
+    shape = region.whole("PrimType", most=len(SHAPES) - 1)
+    if shape:
+        refusals.add(region.at("PrimType"), shown(str(shape)), f"{SHAPES[shape]}: vox knows boxes")
+        return None
+    x, y, z = (region.number(axis, 0.0) for axis in "XYZ")
+    dx, dy, dz = (region.number(f"d{axis}", 0.0, least=0.0) for axis in "XYZ")
+    bits = region.whole("DofFixed", _ALL if region.flag("Fixed") else 0, most=_ALL)
+    held = tuple(freedom for n, freedom in enumerate(DEGREES_OF_FREEDOM) if bits >> n & 1)
+    return FixedRegion((x, y, z), (dx, dy, dz), held)

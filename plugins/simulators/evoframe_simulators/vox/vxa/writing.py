@@ -1,0 +1,255 @@
+"""VXA files written: every section, as the engine leaves the members of a missing one as they happen to be.
+
+No text element is empty, which its reader does not survive (physics.md, section 12.8 and 12.9), and numbers
+have all their digits, so that what is read again is what was written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from html import escape  # that of xml.sax imports half the network
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe import InputError
+from evoframe_simulators.vox.bodies import check_cycles
+from evoframe_simulators.vox.materials import PaletteMaterial, materials_of, single
+from evoframe_simulators.vox.vxa.cells import as_vox_holds
+from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
+from evoframe_simulators.vox.vxa.inert import CHANGES, CONTROLLERS, FEATURES, GROWTH, TASKS, UNUSED
+
+if TYPE_CHECKING:
+    from evoframe_simulators.vox.regions import FixedRegion
+    from evoframe_simulators.vox.simulator import Vox
+
+__all__ = ["left_out", "write_vxa"]
+
+_LARGEST_CODE = ord("~") - FIRST_CHARACTER
+_PASSIVE, _EXPANDING, _CONTRACTING = (0.0, 0.6, 0.8), (0.8, 0.2, 0.0), (0.0, 0.6, 0.2)
+
+# What the format has no tag for: the option, the same in words, and whether it only matters in contacts.
+_WITHOUT_TAG = (
+    ("ramp", "the ramp at the start of the contraction", False),
+    ("substeps", "the division of time steps", False),
+    ("collision_envelope", "the distance of contacts", True),
+    ("contact_damping", "the damping of contacts", True),
+    ("contact_friction", "the friction of contacts", True),
+    ("complete_contacts", "the search that misses no contact", True),
+    ("step_limit", "the limit of steps", False),
+    ("largest_strain", "the strain that counts as diverged", False),
+    ("largest_distance", "the distance that counts as diverged", False),
+)
+
+_Node = str | Iterable[str]
+
+
+def left_out(vox: Vox) -> tuple[str, ...]:
+    """Return what of the settings a VXA file cannot say; what the engine does anyway is not missing."""
+    defaults = attrs.fields_dict(type(vox))
+    return tuple(
+        f"{words} ({option} = {getattr(vox, option)})"
+        for option, words, in_contacts in _WITHOUT_TAG
+        if getattr(vox, option) != defaults[option].default and (vox.self_collision or not in_contacts)
+    )
+
+
+def write_vxa(
+    vox: Vox, material: NDArray[np.uint8], phase_cycles: NDArray[np.float64], acting: NDArray[np.bool_]
+) -> bytes:
+    """Return a body with its controller and settings as a VXA file, the same bytes for the same arguments.
+
+    Args:
+        vox: The settings.
+        material: ``uint8[X, Y, Z]``; a code is the position of its material in the palette that is written.
+        phase_cycles: ``float64[X, Y, Z]``, cycles.
+        acting: ``bool[X, Y, Z]``, where an offset changes the size of a voxel; others may be anything.
+
+    Raises:
+        InputError: The body is empty, or cannot be written in this format; says why.
+    """
+    if not material.any():
+        raise InputError("the body has no voxel, and the engine takes none without")
+    check_cycles(phase_cycles[acting], "controller")
+    usable = (material > 0) & np.isfinite(phase_cycles)
+    lines = [
+        *_node("Simulator", _simulator(vox)),
+        *_node("Environment", _environment(vox, _fixed(vox, material.shape))),
+        *_node("VXC", _vxc(vox, material, np.where(usable, phase_cycles, 0.0)), Version="0.93"),
+    ]
+    head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
+    text = "\n".join([head, *_node("VXA", lines, Version="1.0"), ""])
+    return text.encode("ascii", errors="xmlcharrefreplace")  # which every reader takes for the same
+
+
+def _node(tag: str, content: _Node, **attributes: str) -> Iterator[str]:
+    """Yield the lines of an element that holds a text, or further lines."""
+    opening = " ".join([tag, *(f'{name}="{value}"' for name, value in attributes.items())])
+    if isinstance(content, str):
+        yield f"<{opening}>{content}</{tag}>"
+        return
+    yield f"<{opening}>"
+    yield from (f"  {line}" for line in content)
+    yield f"</{tag}>"
+
+
+def _values(values: Mapping[str, float]) -> Iterator[str]:
+    """Yield the lines of elements with numbers; flags are 0 and 1."""
+    for tag, value in values.items():
+        yield from _node(tag, repr(int(value) if isinstance(value, int) else float(value)))
+
+
+def _section(tag: str, values: Mapping[str, float]) -> Iterator[str]:
+    return _node(tag, _values(values))
+
+
+def _simulator(vox: Vox) -> Iterator[str]:
+    yield from _section("Integration", {"Integrator": 0, "DtFrac": vox.time_step_fraction})
+    damping = {
+        "BondDampingZ": vox.bond_damping,
+        "ColDampingZ": vox.collision_damping,
+        "SlowDampingZ": vox.slow_damping,
+    }
+    yield from _section("Damping", damping)
+    collisions = {
+        "SelfColEnabled": vox.self_collision,
+        "ColSystem": 3,
+        "CollisionHorizon": vox.collision_horizon,
+    }
+    yield from _section("Collisions", collisions)
+    yield from _section("Features", FEATURES)
+    mesh = ["<DrawSmooth>1</DrawSmooth>", "<Vertices/>", "<Facets/>", "<Lines/>"]
+    yield from _node("SurfMesh", _node("CMesh", mesh))
+    stop = {
+        "StopConditionType": 2,
+        "StopConditionValue": vox.duration,
+        "InitCmTime": vox.start_time,
+        "ActuationStartTime": 0,
+        "AfterlifeTime": 0,
+        "MidLifeFreezeTime": 0,
+    }
+    yield from _section("StopCondition", stop)
+    yield from _section("EquilibriumMode", {"EquilibriumModeEnabled": 0})
+    result = ["<WriteFitnessFile>1</WriteFitnessFile>", "<FitnessFileName>fitness.xml</FitnessFileName>"]
+    yield from _node("GA", [*result, *_values({"Fitness": 0, "FitnessType": 0, "TrackVoxel": 0})])
+    yield from _values({"MinTempFact": 0.1, **CHANGES})
+
+
+def _fixed(vox: Vox, canvas: tuple[int, ...]) -> list[FixedRegion]:
+    """Return the regions that hold a cell, each so that it holds the same cells in the engine."""
+    x, y, z = canvas
+    held = [as_vox_holds(region, (x, y, z)) for region in vox.fixed]
+    return [region for region in held if region is not None]
+
+
+def _environment(vox: Vox, fixed: list[FixedRegion]) -> Iterator[str]:
+    regions = [line for region in fixed for line in _section("FRegion", _region(region))]
+    yield from _node("Boundary_Conditions", [*_values({"NumBCs": len(fixed)}), *regions])
+    gravity = {
+        "GravEnabled": vox.gravity != 0.0,
+        "GravAcc": vox.gravity,
+        "AlterGravityHalfway": 1,
+        "FloorEnabled": vox.floor,
+        "FloorSlope": vox.floor_slope,
+    }
+    yield from _section("Gravity", gravity)
+    thermal = {
+        "TempEnabled": 1,
+        "TempAmp": vox.temperature_amplitude,
+        "TempBase": vox.temperature_base,
+        "VaryTempEnabled": 1,
+        "TempPeriod": single(1 / vox.frequency),
+    }
+    yield from _section("Thermal", thermal)
+    for tag, values in CONTROLLERS.items():
+        yield from _section(tag, values)
+    traces = max(0.01, vox.duration / 100)  # of a long simulation the engine would write huge ones
+    yield from _values({**GROWTH, "TimeBetweenTraces": traces, "SavePassiveData": 0, **TASKS})
+    yield from _values({"FluidEnvironment": vox.fluid_drag > 0.0, "AggregateDragCoefficient": vox.fluid_drag})
+
+
+def _region(region: FixedRegion) -> dict[str, float]:
+    return {
+        "PrimType": 0,
+        **dict(zip("XYZ", region.origin, strict=True)),
+        **{f"d{axis}": edge for axis, edge in zip("XYZ", region.size, strict=True)},
+        "Radius": 0,
+        "R": 0.4,
+        "G": 0.6,
+        "B": 0.4,
+        "alpha": 1,
+        "DofFixed": region.bits,
+        **{f"{what}{axis}": 0 for what in ("Force", "Torque", "Displace", "AngDisplace") for axis in "XYZ"},
+    }
+
+
+def _vxc(vox: Vox, material: NDArray[np.uint8], phase: NDArray[np.float64]) -> Iterator[str]:
+    straight = {
+        **{f"{axis}_Dim_Adj": 1 for axis in "XYZ"},
+        **{f"{axis}_{what}_Offset": 0 for what in ("Line", "Layer") for axis in "XY"},
+    }
+    yield from _section("Lattice", {"Lattice_Dim": vox.voxel_size, **straight})
+    squeeze = _values({f"{axis}_Squeeze": 1 for axis in "XYZ"})
+    yield from _node("Voxel", ["<Vox_Name>BOX</Vox_Name>", *squeeze])
+    yield from _node("Palette", _palette(materials_of(vox), int(material.max())))
+    yield from _node("Structure", _structure(material, phase), Compression="ASCII_READABLE")
+
+
+def _palette(materials: Mapping[int, PaletteMaterial], largest: int) -> Iterator[str]:
+    """Yield materials whose positions are their codes, as far as there can be voxels of them."""
+    if largest > _LARGEST_CODE:
+        raise InputError(
+            f"the body has the material {largest}; a VXA file writes each as one character, "
+            f"up to {_LARGEST_CODE}"
+        )
+    last = max(code for code in materials if code <= _LARGEST_CODE)
+    for code in range(1, last + 1):
+        yield from _node("Material", _material(materials.get(code, UNUSED), code), ID=str(code))
+
+
+def _material(material: PaletteMaterial, code: int) -> Iterator[str]:
+    expansion = material.expansion_coefficient
+    colour = _PASSIVE if expansion == 0.0 else _EXPANDING if expansion > 0.0 else _CONTRACTING
+    yield from _values({"MatType": 0})
+    yield from _node("Name", escape(" ".join(material.name.split()), quote=False) or f"material {code}")
+    yield from _section("Display", {**dict(zip(("Red", "Green", "Blue"), colour, strict=True)), "Alpha": 1})
+    mechanical = {
+        "MatModel": 0,
+        "Elastic_Mod": material.youngs_modulus,
+        "Plastic_Mod": 0,
+        "Yield_Stress": 0,
+        "FailModel": 0,
+        "Fail_Stress": 0,
+        "Fail_Strain": 0,
+        "Density": material.density,
+        "Poissons_Ratio": material.poisson_ratio,
+        "CTE": expansion,
+        "MaterialTempPhase": 0,
+        "uStatic": material.static_friction,
+        "uDynamic": material.dynamic_friction,
+    }
+    yield from _section("Mechanical", mechanical)
+
+
+def _structure(material: NDArray[np.uint8], phase: NDArray[np.float64]) -> Iterator[str]:
+    yield from _values({f"{axis}_Voxels": length for axis, length in zip("XYZ", material.shape, strict=True)})
+    networks = ("RegenerationModel", "ForwardModel", "Controller")
+    yield from _values({f"num{network}Synapses": 0 for network in networks})
+    codes = ["".join(chr(FIRST_CHARACTER + code) for code in layer) for layer in _layers(material)]
+    yield from _node("Data", map(_layer, codes))
+    offsets = [",".join(map(repr, layer)) for layer in _layers(phase)]
+    yield from _node("PhaseOffset", map(_layer, offsets))
+
+
+def _layers(cells: NDArray[Any]) -> Iterator[list[Any]]:
+    """Yield the cells of each z, x fastest."""
+    for layer in np.moveaxis(cells, 2, 0):
+        yield layer.T.ravel().tolist()
+
+
+def _layer(text: str) -> str:
+    if "]]>" in text:
+        raise InputError("the body has materials 45, 45, 14 in a row, which no layer of a VXA file can hold")
+    return f"<Layer><![CDATA[{text}]]></Layer>"

@@ -1,0 +1,103 @@
+"""What is shown of a run's champion: its body as it moves, and the networks that drew it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import attrs
+
+from evoframe.analysis.data.geometries import checked
+from evoframe.contract.blame import blaming
+from evoframe.contract.config import RunConfig
+from evoframe.contract.drawings import Geometry, NetworkGraph, can_be_drawn
+from evoframe.contract.protocols import unit_of
+from evoframe.designs.sources import naming, read_job
+from evoframe.errors import InputError
+from evoframe.record.run import Run
+from evoframe.record.verification import Verification
+from evoframe.registry.registry import Plugins
+
+__all__ = ["ChampionData", "DrawnNetwork", "load_champion"]
+
+_FRAMES = 90  # enough for a smooth playback, few enough for a page
+
+
+@attrs.frozen(eq=False)
+class DrawnNetwork:
+    """The network of one of the champion's genomes.
+
+    Attributes:
+        population: Whose genome it is.
+        graph: The network.
+        inputs: What its inputs are called; empty if the encoder does not say.
+        outputs: What its outputs are called; empty if the encoder does not say.
+    """
+
+    population: str
+    graph: NetworkGraph
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
+@attrs.frozen(eq=False)
+class ChampionData:
+    """The champion of a run.
+
+    Attributes:
+        score: Its score.
+        unit: Of the score.
+        geometry: How it looks as it is simulated; ``None`` if its simulator does not say.
+        track: The point that its objective looks at; ``None`` if it is none that is drawn.
+        networks: Of the populations whose evolvers say what their networks look like.
+        verification: What is left of its score with one thing changed; ``None`` if nobody has looked.
+    """
+
+    score: float
+    unit: str
+    geometry: Geometry | None
+    track: str | None
+    networks: tuple[DrawnNetwork, ...]
+    verification: Verification | None
+
+
+def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
+    """Return what is shown of the champion of the run in *directory*.
+
+    Raises:
+        ConfigurationError: The run cannot be read with these plugins.
+        InputError: It is no run's directory, has no champion yet, or is damaged.
+        ComponentError: What its simulator or an evolver gives cannot be drawn.
+    """
+    job = read_job(directory, None, (), plugins, runs=True)
+    run, [design], config = job.run, job.designs, job.config
+    if run is None:
+        raise InputError(f"{directory}: is no run's directory")
+    simulator, objective = config.simulator.component, config.objective.component
+    with naming(directory), blaming("simulator"):
+        geometry = checked(simulator.geometry(design, _FRAMES)) if can_be_drawn(simulator) else None
+    drawn = geometry.tracks if geometry else {}
+    return ChampionData(
+        score=run.champion.score,
+        unit=unit_of(objective),
+        geometry=geometry,
+        track=next((track for track in objective.record.tracks if track in drawn), None),
+        networks=tuple(_networks(run, config)),
+        verification=run.verification,
+    )
+
+
+def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
+    for name, genome in run.champion.genomes.items():
+        population = config.populations.get(name)
+        graph = getattr(population.evolver.component, "graph", None) if population else None
+        if population is None or graph is None:
+            continue
+        encoder = population.encoder.component
+        with blaming(f"populations.{name}.evolver"):
+            try:
+                drawn = graph(genome, encoder.inputs, encoder.outputs)
+            except ValueError as error:
+                raise InputError(f"{run.directory}: the champion's genome of '{name}': {error}") from error
+        inputs, outputs = (tuple(getattr(encoder, key, ())) for key in ("input_names", "output_names"))
+        yield DrawnNetwork(name, drawn, inputs, outputs)

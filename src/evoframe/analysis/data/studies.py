@@ -1,0 +1,184 @@
+"""The rows of a study as tidy tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+import attrs
+import pandas as pd
+
+from evoframe.analysis.statistics.groups import ranked
+from evoframe.contract.protocols import unit_of
+from evoframe.errors import InputError
+from evoframe.files.reading import is_file, read_text, shown_name
+from evoframe.record.champion import LARGEST_DOCUMENT
+from evoframe.record.provenance import differences
+from evoframe.registry.discovery import discover
+from evoframe.registry.registry import Plugins
+from evoframe.study.conduct import STUDY_FILE, survey
+from evoframe.study.gathered import gather, imported_rows
+from evoframe.study.names import called, headings, title_of
+from evoframe.study.plan import Study, read_study, shown
+from evoframe.study.rows import Row
+
+__all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
+
+Yardstick: TypeAlias = Literal["score", "fitness"]
+
+YARDSTICKS: tuple[Yardstick, ...] = ("score", "fitness")
+"""The score of the best pair, which is the same measure for all, and the averaged fitness, as published."""
+
+
+@attrs.frozen
+class StudyData:
+    """A study, and a row for each of its finished runs.
+
+    Attributes:
+        label: What a person calls it.
+        keys: The keys of the grid, perhaps none. The last one is that whose values are compared.
+        unit: Of the scores.
+        planned: How many runs there shall be.
+        rows: Of the finished ones, in the order of work.
+        alike: Whether all configurations simulate and score in one way.
+        best_run: The directory of the run with the best pair, of those whose directories are there.
+        settings: The study as it stands in its file.
+        values: Key of the grid -> what stands for a value in rows -> the value, if it is a number or a text.
+    """
+
+    label: str
+    keys: tuple[str, ...]
+    unit: str
+    planned: int
+    rows: tuple[Row, ...] = attrs.field(repr=False)
+    alike: bool = True
+    best_run: Path | None = None
+    settings: str = attrs.field(default="", repr=False)
+    values: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict, repr=False)
+
+    @property
+    def frame(self) -> pd.DataFrame:
+        """One line for each run: the keys of the grid, and all figures."""
+        return pd.DataFrame([{**self._settings(row), **_figures(row)} for row in self.rows])
+
+    @property
+    def curves(self) -> pd.DataFrame:
+        """One line for each run and generation: the keys of the grid, and both yardsticks."""
+        return pd.DataFrame(
+            [
+                {
+                    **self._settings(row),
+                    "run": row.run,
+                    "generation": generation,
+                    "score": score,
+                    "fitness": fitness,
+                }
+                for row in self.rows
+                for generation, (score, fitness) in enumerate(
+                    zip(row.score_curve, row.fitness_curve, strict=True)
+                )
+            ]
+        )
+
+    def _settings(self, row: Row) -> dict[str, Any]:
+        return {key: self.values.get(key, {}).get(text, text) for key, text in row.settings.items()}
+
+    def views(self, yardstick: Yardstick) -> list[View]:
+        """Return what is compared: the values of the last key, in a view for each combination of the others.
+
+        Where there are several, one more view compares the best of each: those with the greatest mean rank
+        on the *yardstick*, which rankings put first. Their names say where they come from, as in
+        ``WM (n = 2)``. A study whose grid is empty has one view of one group, ``all``.
+        """
+        if not self.keys:
+            return [View(self.label, "group", {"all": self.rows})]
+        found: dict[tuple[str, ...], dict[str, list[Row]]] = {}
+        for row in self.rows:
+            groups = found.setdefault(tuple(row.settings[key] for key in self.keys[:-1]), {})
+            groups.setdefault(called(row.settings[self.keys[-1]]), []).append(row)
+        names = headings(self.keys)
+        titles = [title_of(dict(zip(self.keys, values, strict=False)), names) for values in found]
+        views = [
+            View(title or self.label, names[self.keys[-1]], groups)
+            for title, groups in zip(titles, found.values(), strict=True)
+        ]
+        return [*views, _best(views, yardstick)] if len(views) > 1 else views
+
+
+@attrs.frozen
+class View:
+    """Groups of runs that are compared.
+
+    Attributes:
+        title: What they have in common: ``n = 2``.
+        key: What distinguishes them: ``aggregator``.
+        groups: Name -> the runs of each.
+    """
+
+    title: str
+    key: str
+    groups: Mapping[str, Sequence[Row]] = attrs.field(repr=False)
+
+    def values(self, yardstick: Yardstick) -> dict[str, list[float]]:
+        """Return the final values of each group."""
+        return {name: [getattr(row, yardstick) for row in rows] for name, rows in self.groups.items()}
+
+
+def _best(views: Sequence[View], yardstick: Yardstick) -> View:
+    best: dict[str, Sequence[Row]] = {}
+    for view in views:
+        name = ranked(view.values(yardstick))[0].name
+        best[f"{name} ({view.title})"] = view.groups[name]
+    return View("best of each", views[0].key, best)
+
+
+def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:
+    """Return a study and what is finished of it.
+
+    Args:
+        directory: Its directory.
+        plugins: The plugins that its configurations name; by default those that are installed.
+
+    Raises:
+        ConfigurationError: It cannot be read with these plugins.
+        InputError: It is no study's directory, or one of its runs is damaged.
+    """
+    directory = Path(directory)
+    if not is_file(directory / STUDY_FILE):
+        raise InputError(f"{directory}: is no study's directory: there is no {STUDY_FILE}")
+    study = read_study(directory / STUDY_FILE, (), plugins or discover())
+    imported = imported_rows(study, directory)
+    statuses = survey(study, directory, imported)
+    rows = gather(statuses, imported)
+    here = {run.directory: row.score for run, row in rows.items() if statuses[run].state == "finished"}
+    return StudyData(
+        label=shown_name(directory),
+        keys=tuple(study.grid),
+        unit=_unit(study),
+        planned=len(statuses),
+        rows=tuple(rows.values()),
+        alike=_are_alike(study),
+        best_run=max(here, key=here.__getitem__, default=None),
+        settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
+        values={
+            key: {shown(value): value for value in values if isinstance(value, str | int | float)}
+            for key, values in study.grid.items()
+        },
+    )
+
+
+def _are_alike(study: Study) -> bool:
+    first, *others = [cell.config.simulation() for cell in study.cells]
+    return not any(differences(first, other) for other in others)
+
+
+def _unit(study: Study) -> str:
+    units: Sequence[str] = [unit_of(cell.config.objective.component) for cell in study.cells]
+    return units[0] if len(set(units)) == 1 else ""
+
+
+def _figures(row: Row) -> dict[str, Any]:
+    figures = attrs.asdict(row, filter=lambda field, _: not field.name.endswith("_curve"))
+    del figures["settings"]
+    return figures

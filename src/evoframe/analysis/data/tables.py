@@ -1,0 +1,150 @@
+"""The tables of a study, for a spreadsheet and for an article."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import attrs
+import pandas as pd
+
+from evoframe.analysis.data.studies import YARDSTICKS, StudyData, View, Yardstick
+from evoframe.analysis.statistics.corrections import Correction
+from evoframe.analysis.statistics.groups import Comparison, Group, compare, ranked
+from evoframe.record.provenance import leaves
+from evoframe.record.verification import Verification
+
+__all__ = [
+    "Compared",
+    "comparisons",
+    "pairs_table",
+    "ranking_table",
+    "summary_table",
+    "verification_table",
+    "versions_table",
+]
+
+_WHERE = ("view", "yardstick")
+
+
+@attrs.frozen
+class Compared:
+    """A view on one yardstick.
+
+    Attributes:
+        view: The groups.
+        yardstick: What they are compared by.
+        groups: How their values lie.
+        comparison: Of the groups, if there is more than one.
+    """
+
+    view: View
+    yardstick: Yardstick
+    groups: tuple[Group, ...]
+    comparison: Comparison | None
+
+    @property
+    def where(self) -> dict[str, str]:
+        """The cells of a table that say what a line is about."""
+        return {"view": self.view.title, "yardstick": self.yardstick}
+
+
+def comparisons(data: StudyData, correction: Correction = "holm") -> list[Compared]:
+    """Return what is to be said of each view on each yardstick."""
+    return [
+        _compared(view, yardstick, correction) for yardstick in YARDSTICKS for view in data.views(yardstick)
+    ]
+
+
+def _compared(view: View, yardstick: Yardstick, correction: Correction) -> Compared:
+    values = view.values(yardstick)
+    if len(values) == 1:
+        return Compared(view, yardstick, ranked(values), None)
+    comparison = compare(values, correction)
+    return Compared(view, yardstick, comparison.groups, comparison)
+
+
+def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
+    """Return a line for each group: how its values lie, and its letters."""
+
+    def with_unit(name: str) -> str:
+        return f"{name} ({unit})" if unit else name
+
+    return pd.DataFrame(
+        [
+            {
+                **each.where,
+                "group": group.name,
+                "runs": group.n,
+                "mean rank": group.mean_rank,
+                with_unit("mean"): group.mean,
+                with_unit("sd"): group.sd,
+                with_unit("median"): group.median,
+                with_unit("first quartile"): group.quartiles[0],
+                with_unit("third quartile"): group.quartiles[1],
+                "Shapiro-Wilk p": group.shapiro_p,
+                "letters": "" if each.comparison is None else each.comparison.letters[group.name],
+            }
+            for each in found
+            for group in each.groups
+        ]
+    )
+
+
+def pairs_table(found: Sequence[Compared]) -> pd.DataFrame:
+    """Return a line for each pair of groups: Dunn's p, and how often the first is the greater."""
+    lines = [
+        {
+            **each.where,
+            "first": pair.first,
+            "second": pair.second,
+            "Dunn p": pair.p,
+            "correction": each.comparison.correction,
+            "A12": pair.a12,
+        }
+        for each in found
+        if each.comparison is not None
+        for pair in each.comparison.pairs
+    ]
+    return pd.DataFrame(lines, columns=[*_WHERE, "first", "second", "Dunn p", "correction", "A12"])
+
+
+def ranking_table(found: Sequence[Compared]) -> pd.DataFrame:
+    """Return a line for each view and yardstick: Kruskal-Wallis, and the ranking in the paper's notation."""
+    lines = [
+        {
+            **each.where,
+            "ranking": each.comparison.ranking,
+            "Kruskal-Wallis H": each.comparison.h,
+            "p": each.comparison.p,
+            "epsilon squared": each.comparison.epsilon_squared,
+        }
+        for each in found
+        if each.comparison is not None
+    ]
+    return pd.DataFrame(lines, columns=[*_WHERE, "ranking", "Kruskal-Wallis H", "p", "epsilon squared"])
+
+
+def verification_table(verification: Verification) -> pd.DataFrame:
+    """Return a line for each change: the median score with it, and its part of the unchanged score."""
+    return pd.DataFrame(
+        [
+            {
+                "variant": finding.name,
+                f"median ({verification.unit or 1})": finding.median,
+                "of unchanged": verification.share(finding),
+                "draws": len(finding.scores),
+                "diverged": len(finding.diverged_at),
+            }
+            for finding in verification.rows
+        ]
+    )
+
+
+def versions_table(provenance: Mapping[str, Any]) -> pd.DataFrame:
+    """Return a line for each thing that a run says it was made by; none if it says nothing."""
+    found = [
+        (key, ", ".join(map(str, value)) if isinstance(value, list) else str(value))
+        for key, value in (leaves(provenance) if provenance else ())
+    ]
+    return pd.DataFrame(found, columns=["what", "which"])

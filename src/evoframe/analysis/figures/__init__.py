@@ -1,0 +1,1 @@
+"""Figures for print: studies, bodies, networks, curves."""

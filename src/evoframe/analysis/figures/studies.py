@@ -1,0 +1,250 @@
+"""Figures of a study, fit for an article: matplotlib figures, to be changed or saved by whoever asks."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import scikit_posthocs as posthocs
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
+
+from evoframe.analysis.data.studies import View, Yardstick
+from evoframe.analysis.data.units import NAMES, axis_title, factor_of
+from evoframe.analysis.figures.lines import Line, lines_of_view
+from evoframe.analysis.figures.plain import plain
+from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, broken, row_height, text_width
+from evoframe.analysis.statistics.groups import FEWEST, Comparison
+from evoframe.analysis.statistics.words import counted
+
+__all__ = ["curves", "curves_of", "finals", "lines", "ranks"]
+
+_TITLE, _SIZE = 9, 7  # points: of titles, and of names
+_INSIDE = COLUMN - 0.2  # inches: what a figure has room for beside its margins
+_NAME = 1.35  # inches, of a group's name at the left of its values
+_ROW, _RANKS, _BARS = 0.32, 0.22, 0.17  # inches: from a group, a rank or a bar to the next at least
+_RANKED = 1.0  # inches, of a group's name at an end of the line of ranks
+_GAP = 0.03  # inches, between a line and its label
+_HANDLE, _APART = 0.28, 0.2  # inches: what stands before a name in a legend, and between two columns of it
+_MOST = 4  # columns of a legend
+_LINE = 0.13  # inches, of a legend
+
+
+def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
+    """Return the mean over runs for each generation, with its 95 % band (bootstrap over runs).
+
+    Args:
+        view: The groups.
+        yardstick: What is drawn.
+        unit: Of scores; metres are shown as millimetres.
+
+    Raises:
+        ValueError: No run has a curve.
+    """
+    return curves_of(lines_of_view(view, yardstick, unit), view, yardstick, unit)
+
+
+def curves_of(drawn: Sequence[Line], view: View, yardstick: Yardstick, unit: str = "") -> Figure:
+    """Return :func:`curves` from the lines of the view, whose bands take a while."""
+    return lines(drawn, axis_title(NAMES[yardstick], unit), view.title, f"{view.key}: runs")
+
+
+@plain
+def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = None) -> Figure:
+    """Return lines over generations.
+
+    Args:
+        drawn: What is drawn.
+        label: Of the vertical axis.
+        title: What stands above it.
+        legend: What stands above the names of lines.
+
+    Raises:
+        ValueError: There are none.
+    """
+    if not drawn:
+        raise ValueError("there are no lines to be drawn")
+    names = [broken(line.name, _INSIDE - _HANDLE, _SIZE) for line in drawn]
+    n_columns = _columns(names)
+    below = broken(legend or "", _INSIDE, _SIZE)
+    figure, axes = _figure(title, 2.6 + _LINE * (_lines(names, n_columns) + below.count("\n") + 1))
+    for line, name in zip(drawn, names, strict=True):
+        style: dict[str, Any] = {
+            "color": COLOURS[line.colour % len(COLOURS)],
+            "linestyle": DASHES[line.dash % len(DASHES)],
+        }
+        generations = np.arange(len(line.values))
+        axes.plot(generations, line.values, label=name, lw=1.2, **style)
+        if line.band is not None:
+            axes.fill_between(generations, *line.band, color=style["color"], alpha=0.18, lw=0)
+    axes.set(xlabel="generation", ylabel=label)
+    axes.locator_params(axis="x", integer=True)
+    axes.margins(x=0)
+    figure.legend(
+        title=below or None,
+        frameon=False,
+        loc="outside lower center",
+        ncols=n_columns,
+        fontsize=_SIZE,
+        title_fontsize=_SIZE,
+    )
+    return figure
+
+
+def _columns(names: Sequence[str]) -> int:
+    """Return how many columns a legend has room for."""
+    fitting = (n for n in range(min(_MOST, len(names)), 1, -1) if _legend_width(names, n) <= _INSIDE)
+    return next(fitting, 1)
+
+
+def _legend_width(names: Sequence[str], n_columns: int) -> float:
+    columns = _in_columns(names, n_columns)
+    widths = [_HANDLE + max(text_width(name, _SIZE) for name in column) for column in columns]
+    return sum(widths) + _APART * (n_columns - 1)
+
+
+def _lines(names: Sequence[str], n_columns: int) -> int:
+    """Return how many lines the longest column of a legend has."""
+    columns = _in_columns(names, n_columns)
+    return max(sum(name.count("\n") + 1 for name in column) for column in columns)
+
+
+def _in_columns(names: Sequence[str], n_columns: int) -> list[Sequence[str]]:
+    """Return names as matplotlib puts them into a legend: the first columns have one more."""
+    return [part.tolist() for part in np.array_split(np.array(names, dtype=object), n_columns)]
+
+
+@plain
+def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Comparison | None = None) -> Figure:
+    """Return every run's final value, with box plots, and letters: what shares one is not different.
+
+    The groups stand one below the other, where long names have room. Those of fewer than five runs have no
+    box (Krzywinski and Altman 2014, Nature Methods 11, 119).
+
+    Args:
+        view: The groups.
+        yardstick: What is drawn.
+        unit: Of scores; metres are shown as millimetres.
+        comparison: Of the groups, for the letters.
+    """
+    groups = view.values(yardstick)
+    labels = [
+        f"{broken(name, _NAME, _SIZE)}\n{counted(len(values), 'run', 'runs')}"
+        for name, values in groups.items()
+    ]
+    height = max(0.8, len(groups) * row_height(labels, _ROW))
+    figure, axes = _figure(view.title, 0.75 + height)
+    rng = np.random.default_rng(0)  # of the places of points, nothing else
+    for place, values in enumerate(groups.values()):
+        scaled = np.array(values) * factor_of(unit)
+        boxed = len(values) >= FEWEST
+        beside = place - (0.2 if boxed else 0.0) + rng.uniform(-0.1, 0.1, len(values))
+        colour = COLOURS[place % len(COLOURS)]
+        axes.plot(scaled, beside, "o", color=colour, ms=3, mew=0, alpha=0.6)
+        if boxed:
+            _box(axes, place + 0.18, scaled)
+    if comparison is not None:
+        _letter(axes, comparison, list(groups))
+    axes.locator_params(axis="x", nbins=6)  # more would nearly touch beside long names
+    axes.set_yticks(range(len(groups)), labels)
+    axes.set_ylim(len(groups) - 0.5, -0.5)  # the first on top
+    axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=broken(view.key, height, 8))
+    return figure
+
+
+@plain
+def ranks(comparison: Comparison, title: str) -> Figure:
+    """Return the mean rank of each group on a line, the best at the right; bars join what is not different.
+
+    Source: the critical difference diagrams of Demsar 2006, here with the p-values of the comparison.
+    """
+    names = [group.name for group in comparison.groups]
+    labels = [broken(f"{group.name}: {group.mean_rank:.3g}", _RANKED, _SIZE) for group in comparison.groups]
+    figure, axes = _figure(title, 0.66)
+    numbers = range(len(names))  # the picture would depend on the hashes of names
+    p = pd.DataFrame(
+        [[1.0 if i == j else comparison.pair(names[i], names[j]).p for j in numbers] for i in numbers]
+    )
+    drawn = posthocs.critical_difference_diagram(
+        {number: comparison.groups[number].mean_rank for number in numbers},
+        p,
+        ax=axes,
+        alpha=comparison.alpha,
+        label_fmt_left="{label}",
+        label_fmt_right="{label}",
+        label_props={"size": _SIZE},
+        text_h_margin=0.02 * max(1.0, np.ptp([group.mean_rank for group in comparison.groups])),
+        color_palette=["black"] * len(names),
+        elbow_props={"lw": 0.9},
+        marker_props={"s": 14},
+        crossbar_props={"marker": "o", "ms": 4},  # at those that are joined, not at what lies between
+    )
+    for text in drawn["labels"]:
+        text.set_text(labels[int(text.get_text())])
+        gap = -_GAP if text.get_horizontalalignment() == "right" else _GAP  # else it touches its line
+        text.set_transform(text.get_transform() + ScaledTranslation(gap, 0, figure.dpi_scale_trans))
+    axes.locator_params(axis="x", nbins=5)
+    axes.set_xlabel("mean rank (more is better)")
+    axes.xaxis.set_label_position("top")
+    height = _spaced(axes, drawn, row_height(labels, _RANKS))
+    figure.set_figheight(figure.get_figheight() + height)
+    return figure
+
+
+def _spaced(axes: Axes, drawn: Mapping[str, Any], row: float) -> float:
+    """Give bars and ranks, which lie at -1, -2, ..., the room that they need, and return how much it is."""
+    bars = -min((bar.get_ydata()[0] for [bar] in drawn["crossbars"]), default=0)
+
+    def below(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+        return -_BARS * np.minimum(levels, bars) - row * np.maximum(levels - bars, 0)
+
+    for line in [*drawn["elbows"], *itertools.chain(*drawn["crossbars"])]:
+        line.set_ydata(below(-np.asarray(line.get_ydata(), dtype=np.float64)))
+    for text in drawn["labels"]:
+        text.set_y(below(-text.get_position()[1]))
+    lowest = min(text.get_position()[1] for text in drawn["labels"]) - row / 2
+    axes.set_ylim(lowest, 0.08)
+    return float(-lowest)
+
+
+def _figure(title: str, height: float) -> tuple[Figure, Axes]:
+    """Return a figure as wide as a column, higher by the lines of its title."""
+    above = broken(title, _INSIDE, _TITLE)
+    figure = Figure(figsize=(COLUMN, height + 0.17 * above.count("\n")), layout="constrained")
+    figure.suptitle(above, size=_TITLE)
+    axes = figure.add_subplot()
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(labelsize=_SIZE)
+    for text in (axes.xaxis.label, axes.yaxis.label):
+        text.set_fontsize(8)
+    return figure, axes
+
+
+def _box(axes: Axes, place: float, values: NDArray[np.float64]) -> None:
+    axes.boxplot(
+        [values],
+        positions=[place],
+        widths=0.28,
+        orientation="horizontal",
+        showfliers=False,
+        medianprops={"color": "black", "lw": 1.5},
+    )
+
+
+def _letter(axes: Axes, comparison: Comparison, names: Sequence[str]) -> None:
+    for place, name in enumerate(names):
+        axes.annotate(
+            comparison.letters[name],
+            (1.0, place),
+            xytext=(3, 0),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            ha="left",
+            va="center",
+            size=8,
+        )

@@ -1,0 +1,1 @@
+"""Output of reports: names, lists and atomic sets of files."""

@@ -1,0 +1,1 @@
+"""Statistics of groups of runs: tests, effect sizes, corrections, conclusions."""

@@ -1,0 +1,1 @@
+"""Configurations: presets, files and overrides become one checked value."""

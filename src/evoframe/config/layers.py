@@ -1,0 +1,262 @@
+"""From presets, files and overrides to one tree of tables, knowing where each value came from."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from evoframe.errors import ConfigurationError, InputError
+from evoframe.files.reading import read_text
+from evoframe.registry.registry import suggestion
+
+__all__ = [
+    "COMPONENTS",
+    "POPULATION_COMPONENTS",
+    "Layer",
+    "Layers",
+    "Tree",
+    "as_read",
+    "layer_of",
+    "layers_of",
+    "preset_names",
+    "read_layers",
+]
+
+Tree = dict[str, Any]
+
+COMPONENTS: Mapping[str, str] = {
+    "collaboration": "strategy",
+    "aggregator": "aggregator",
+    "simulator": "simulator",
+    "objective": "objective",
+    "executor": "executor",
+}
+"""Top-level key -> kind of the component that is chosen there."""
+
+POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "evolver"}
+"""Key within a population -> kind of the component that is chosen there."""
+
+_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
+_BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
+_LARGEST_FILE = 16  # MiB
+_DEEPEST = 32  # tables and lists within each other; no option needs a quarter of that
+
+
+@attrs.frozen
+class Layer:
+    """One source of settings.
+
+    Attributes:
+        origin: What a person calls it: a file's name, ``preset 'paper'``, ``--set run.seed=2``.
+        tree: Its tables; components are tables with ``name``.
+    """
+
+    origin: str
+    tree: Tree
+
+
+@attrs.frozen
+class Layers:
+    """Settings in the order in which they override each other, the last one wins."""
+
+    layers: tuple[Layer, ...]
+
+    def merged(self) -> Tree:
+        """Return the tree of all layers together."""
+        result: Tree = {}
+        for layer in self.layers:
+            result = _merge(result, layer.tree, ())
+        return result
+
+    def under(self, overrides: Iterable[str | Layer]) -> Layers:
+        """Return the same with *overrides* on top: as for :func:`read_layers`."""
+        if isinstance(overrides, str):
+            raise TypeError("overrides are a list of strings, not one string")
+        on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
+        return Layers((*self.layers, *map(_with_component_tables, on_top)))
+
+    def without(self, *keys: str) -> Layers:
+        """Return the same without some keys at the top."""
+        return Layers(
+            tuple(
+                Layer(layer.origin, {key: value for key, value in layer.tree.items() if key not in keys})
+                for layer in self.layers
+            )
+        )
+
+    def origin(self, *paths: tuple[str, ...]) -> str:
+        """Return the origin of the value at the latest of *paths*, or of the nearest table around it."""
+        return self.layers[max(map(self._level, paths))].origin
+
+    def _level(self, path: tuple[str, ...]) -> int:
+        for length in range(len(path), 0, -1):
+            for level in range(len(self.layers) - 1, -1, -1):
+                if _has(self.layers[level].tree, path[:length]):
+                    return level
+        return 0
+
+
+def as_read(tables: Mapping[str, Any]) -> Tree:
+    """Return tables as they are read back from a file: tuples are lists."""
+    read: Tree = json.loads(json.dumps(tables))
+    return read
+
+
+def preset_names() -> list[str]:
+    """Return the names of the presets that come with evoframe."""
+    return sorted(
+        entry.name.removesuffix(".toml")
+        for entry in files("evoframe.config").joinpath("presets").iterdir()
+        if entry.name.endswith(".toml")
+    )
+
+
+def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> Layers:
+    """Read a preset or file with what it extends, and put the *overrides* on top.
+
+    Args:
+        source: Name of a preset, or path of a TOML file.
+        overrides: Layers, or ``key=value`` with a dotted key and a TOML value, as given to ``--set``; the
+            last one wins.
+
+    Raises:
+        ConfigurationError: Something cannot be read; says what and where.
+    """
+    return Layers(()).under(_chain(str(source), Path(), ())).under(overrides)
+
+
+def layer_of(origin: str, key: str, value: Any) -> Layer:
+    """Return the layer that sets one dotted *key*."""
+    tree: Any = value
+    for part in reversed(key.split(".")):
+        tree = {part: tree}
+    return Layer(origin, tree)
+
+
+def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
+    """Return a layer for each dotted key of *settings*, as Python code gives them; ``None`` sets nothing."""
+    given = {key: value for key, value in settings.items() if value is not None}
+    return [layer_of(f"{key}={value!r}", key, value) for key, value in given.items()]
+
+
+def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:
+    """Return the layer of *source*, preceded by those that it extends."""
+    asked = f"{seen[-1]}: extends: " if seen else ""
+    origin, text, folder = _read(source, relative_to, asked)
+    if any(_same_source(origin, other) for other in seen):
+        raise ConfigurationError(f"{origin}: extends itself: {' -> '.join([*seen, origin])}")
+    tree = _parsed(text, origin)
+    tree.pop("provenance", None)  # what a run wrote about itself is no setting
+    base = tree.pop("extends", "paper" if origin != "preset 'paper'" else False)
+    if base is False:
+        return [Layer(origin, tree)]
+    if not isinstance(base, str) or not base:
+        raise ConfigurationError(f"{origin}: extends: expected the name of a preset or file, or false")
+    return [*_chain(base, folder, (*seen, origin)), Layer(origin, tree)]
+
+
+def _same_source(origin: str, other: str) -> bool:
+    """Return whether two names mean one preset or one file."""
+    if "preset '" in (origin[:8], other[:8]):
+        return origin == other
+    return Path(origin).resolve() == Path(other).resolve()
+
+
+def _parsed(text: str, origin: str) -> Tree:
+    try:
+        tree = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
+        raise ConfigurationError(f"{origin}: not valid TOML: {error}") from error
+    _refuse_depth(tree, origin)
+    return tree
+
+
+def _refuse_depth(tree: Tree, origin: str) -> None:
+    """Refuse what is nested more deeply than anything that walks through it can follow."""
+    level: list[Any] = [tree]
+    for _ in range(_DEEPEST):
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [item for values in inner for item in values if isinstance(item, dict | list)]
+    if level:
+        raise ConfigurationError(f"{origin}: tables and lists are nested more than {_DEEPEST} deep")
+
+
+def _read(source: str, relative_to: Path, asked: str) -> tuple[str, str, Path]:
+    """Return origin, text and folder of a preset or file; *asked* says in errors what wants it."""
+    if source in preset_names():
+        text = files("evoframe.config").joinpath("presets", f"{source}.toml").read_text(encoding="utf-8")
+        return f"preset '{source}'", text, Path()
+    path = relative_to / source
+    if not source.endswith(".toml") and not path.exists():
+        known = preset_names()
+        raise ConfigurationError(
+            f"{asked}there is no preset '{source}'{suggestion(source, known, 'presets')}; "
+            "a file needs the ending .toml"
+        )
+    try:
+        return str(path), read_text(path, _LARGEST_FILE), path.parent
+    except InputError as error:
+        raise ConfigurationError(f"{asked}{error}") from error
+
+
+def _override(text: str) -> Layer:
+    key, equals, value = text.partition("=")
+    key = key.strip()
+    if not equals or not _KEY.fullmatch(key):
+        raise ConfigurationError(f"--set {text}: expected key=value, as in aggregator=hm or run.seed=2")
+    if key.count(".") >= _DEEPEST:
+        raise ConfigurationError(f"--set {text[:80]}...: tables are nested more than {_DEEPEST} deep")
+    return layer_of(f"--set {text}", key, _value(text, value.strip()))
+
+
+def _value(text: str, value: str) -> Any:
+    if _BARE_WORD.fullmatch(value) and value not in ("true", "false", "inf", "nan"):
+        return value
+    tree = _parsed(f"value = {value}", f"--set {text}")
+    if list(tree) != ["value"]:
+        raise ConfigurationError(f"--set {text}: the right side must be one TOML value")
+    return tree["value"]
+
+
+def _is_component(path: tuple[str, ...]) -> bool:
+    if len(path) == 1:
+        return path[0] in COMPONENTS
+    return len(path) == 3 and path[0] == "populations" and path[2] in POPULATION_COMPONENTS
+
+
+def _with_component_tables(layer: Layer) -> Layer:
+    def convert(value: Any, path: tuple[str, ...]) -> Any:
+        if _is_component(path) and isinstance(value, str):
+            return {"name": value}
+        if isinstance(value, dict) and not _is_component(path):
+            return {key: convert(inner, (*path, key)) for key, inner in value.items()}
+        return value
+
+    return Layer(layer.origin, convert(layer.tree, ()))
+
+
+def _merge(base: Any, over: Any, path: tuple[str, ...]) -> Any:
+    if not (isinstance(base, dict) and isinstance(over, dict)):
+        return over
+    if _is_component(path) and "name" in over and over["name"] != base.get("name"):
+        return over  # the options of another component must not linger
+    merged = dict(base)
+    for key, value in over.items():
+        merged[key] = _merge(base[key], value, (*path, key)) if key in base else value
+    return merged
+
+
+def _has(tree: Any, path: tuple[str, ...]) -> bool:
+    for part in path:
+        key = part.split("[", 1)[0]
+        if not isinstance(tree, dict) or key not in tree:
+            return False
+        tree = tree[key]
+    return True

@@ -1,0 +1,312 @@
+"""From presets, files and overrides to a configuration that is checked as a whole before anything runs."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import attrs
+from attrs import validators
+
+from evoframe.config.layers import (
+    COMPONENTS,
+    POPULATION_COMPONENTS,
+    Layer,
+    Layers,
+    Tree,
+    layer_of,
+    read_layers,
+)
+from evoframe.contract.config import Chosen, PluginSettings, PopulationConfig, RunConfig, RunSettings, is_role
+from evoframe.contract.protocols import Simulator
+from evoframe.documents.structuring import Fault, StructureError, found, structure
+from evoframe.errors import ConfigurationError, PluginError
+from evoframe.registry.discovery import discover
+from evoframe.registry.registry import KINDS, Offer, Plugins, suggestion
+
+__all__ = ["load_config", "named_simulator", "resolved"]
+
+C = TypeVar("C")
+_RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
+
+
+def load_config(
+    source: str | Path = "paper",
+    *,
+    overrides: Iterable[str | Layer] = (),
+    plugins: Plugins | None = None,
+) -> RunConfig:
+    """Read, resolve and check a configuration.
+
+    Args:
+        source: Name of a preset, or path of a TOML file.
+        overrides: What is set on top of that, the last one wins: ``key=value`` with a dotted key and a TOML
+            value, as given to ``--set``, or layers of tables.
+        plugins: The plugins to choose from; by default those that are installed.
+
+    Raises:
+        ConfigurationError: With all faults that were found, each with its file and key.
+    """
+    if not isinstance(source, str | Path):
+        raise TypeError(f"a configuration is named by a preset or a file, not by {type(source).__name__}")
+    return resolved(read_layers(source, overrides), Path(source).stem, plugins or discover())
+
+
+def resolved(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
+    """Resolve and check a configuration that was read.
+
+    Args:
+        layers: What was read.
+        label: What a person calls it.
+        plugins: The plugins to choose from.
+
+    Raises:
+        ConfigurationError: With all faults that were found, each with its file and key.
+    """
+    reading = _Reading(layers.merged())
+    settings = reading.section("plugins", PluginSettings) or PluginSettings()
+    usable = plugins.without(settings.block)
+    reading.refuse_missing(usable, settings.require)
+    config = reading.config(usable, settings, label)
+    if config is None:
+        raise ConfigurationError(_report(reading.faults, layers))
+    return config
+
+
+def named_simulator(
+    source: str | Path, overrides: Sequence[str | Layer], plugins: Plugins
+) -> Chosen[Simulator] | None:
+    """Return the simulator that a configuration names, to be asked which settings a file brings with it.
+
+    Its options are those of the preset as far as they make a simulator: what is set on top of the preset may
+    only fit together with the settings of the file.
+
+    Args:
+        source: Name of a preset, or path of a TOML file.
+        overrides: As for :func:`load_config`.
+        plugins: The plugins to choose from.
+
+    Returns:
+        The simulator; ``None`` if there are faults, which :func:`load_config` reports.
+    """
+    table = read_layers(source, overrides).merged().get("simulator")
+    if not isinstance(table, Mapping) or "name" not in table:
+        return None
+    alone = layer_of("", "simulator", {"name": table["name"]})
+    for given in ([alone], overrides):
+        tree = read_layers(source, given).merged()
+        reading = _Reading(tree)
+        settings = reading.section("plugins", PluginSettings) or PluginSettings()
+        usable = plugins.without(settings.block)
+        chosen = reading.chosen(usable, "simulator", tree["simulator"], ("simulator",))
+        if chosen is not None:
+            return chosen
+    return None
+
+
+def _line(fault: Fault, layers: Layers) -> str:
+    return f"{layers.origin(fault.path, fault.involves)}: {'.'.join(fault.path)}: {fault.message}"
+
+
+def _report(faults: list[Fault], layers: Layers) -> str:
+    lines = [_line(fault, layers) for fault in faults]
+    if len(lines) == 1:
+        return lines[0]
+    return "\n  ".join([f"{len(lines)} faults in the configuration:", *lines])
+
+
+@attrs.frozen
+class _Size:
+    size: int = attrs.field(default=25, validator=validators.ge(2))
+
+
+class _Reading:
+    """One pass over a tree, which collects faults instead of stopping at the first."""
+
+    def __init__(self, tree: Tree) -> None:
+        self.tree = tree
+        self.faults: list[Fault] = []
+
+    def section(self, key: str, class_: type[C]) -> C | None:
+        return self._structured(self.tree.get(key, {}), class_, (key,))
+
+    def refuse_missing(self, plugins: Plugins, required: Iterable[str]) -> None:
+        for distribution in required:
+            try:
+                plugins.require([distribution])
+            except PluginError as error:
+                self.faults.append(Fault(("plugins", "require"), str(error)))
+
+    def config(self, plugins: Plugins, settings: PluginSettings, label: str) -> RunConfig | None:
+        """Return the configuration, or ``None`` if there are faults."""
+        self._refuse_unknown_keys()
+        run = self.section("run", RunSettings)
+        choose = functools.partial(self.chosen, plugins)
+        populations = self._populations(choose)
+        chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
+        self.faults += _Checks(populations, chosen).faults()
+        if self.faults:
+            return None
+        return RunConfig(
+            run=cast("RunSettings", run),
+            populations=cast("Mapping[str, PopulationConfig]", populations),
+            plugins=settings,
+            label=label,
+            discovered=plugins,
+            **cast("dict[str, Any]", chosen),
+        )
+
+    def chosen(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Chosen[Any] | None:
+        """Return the component that a table names, or ``None`` if there are faults."""
+        if not isinstance(table, Mapping) or not isinstance(table.get("name"), str):
+            message = f"expected the name of one of {', '.join(plugins.names(kind))}, or a table with name"
+            self.faults.append(Fault(path, f"{message}; found {found(table)}"))
+            return None
+        options = {key: value for key, value in table.items() if key != "name"}
+        try:
+            offer = plugins.find(kind, table["name"])
+        except ConfigurationError as error:
+            self.faults.append(Fault(path, str(error)))
+            return None
+        component = self._structured(options, offer.component, path)
+        if component is None:
+            return None
+        breaches = [Fault(path, message) for message in _breaches(offer, component)]
+        self.faults += breaches
+        return None if breaches else Chosen(table["name"], component, offer.source)
+
+    def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
+        try:
+            return structure(value, class_, path)
+        except StructureError as error:
+            self.faults += error.faults
+            return None
+
+    def _refuse_unknown_keys(self) -> None:
+        known = ["run", "populations", *COMPONENTS, "plugins"]
+        for key in self.tree:
+            if key == "extends":
+                self.faults.append(Fault((key,), "can only be set in a file"))
+            elif key not in known:
+                self.faults.append(Fault((key,), f"unknown key{suggestion(key, known, 'keys')}"))
+
+    def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
+        tables = self.tree.get("populations")
+        if not isinstance(tables, Mapping) or len(tables) < 2:
+            self.faults.append(Fault(("populations",), "expected at least two tables [populations.ROLE]"))
+            return {}
+        return {role: self._population(role, table, choose) for role, table in tables.items()}
+
+    def _population(
+        self, role: str, table: Any, choose: Callable[..., Chosen[Any] | None]
+    ) -> PopulationConfig | None:
+        path = ("populations", role)
+        if role in _RESERVED_ROLES:
+            self.faults.append(Fault(path, f"'{role}' is a column of the database; choose another name"))
+        elif not is_role(role):
+            self.faults.append(Fault(path, f"'{role}': use lower-case letters, digits, - and _"))
+        if not isinstance(table, Mapping):
+            self.faults.append(Fault(path, f"expected a table, found {found(table)}"))
+            return None
+        rest = {key: value for key, value in table.items() if key not in POPULATION_COMPONENTS}
+        size = self._structured(rest, _Size, path)
+        chosen = {
+            key: choose(kind, table.get(key), (*path, key)) for key, kind in POPULATION_COMPONENTS.items()
+        }
+        if size is None or None in chosen.values():
+            return None
+        return PopulationConfig(size.size, **cast("dict[str, Any]", chosen))
+
+
+class _Checks:
+    """What components demand of each other; skips what a fault found earlier leaves undecided."""
+
+    def __init__(
+        self,
+        populations: Mapping[str, PopulationConfig | None],
+        chosen: Mapping[str, Chosen[Any] | None],
+    ) -> None:
+        self.populations = {role: given for role, given in populations.items() if given is not None}
+        self.complete = bool(populations) and len(self.populations) == len(populations)
+        self.chosen = {key: given.component for key, given in chosen.items() if given is not None}
+
+    def faults(self) -> list[Fault]:
+        return [*self._sizes(), *self._collaboration(), *self._roles(), *self._record()]
+
+    def _sizes(self) -> Iterator[Fault]:
+        for role, population in self.populations.items():
+            check = functools.partial(population.evolver.component.check, population.size)
+            yield from _refusal(("populations", role), check)
+
+    def _collaboration(self) -> Iterator[Fault]:
+        strategy = self.chosen.get("collaboration")
+        if strategy is None:
+            return
+        counts: set[int] = set()
+        for role, population in self.populations.items():
+            try:
+                counts.add(strategy.size(population.size))
+            except ConfigurationError as error:
+                yield Fault(("collaboration",), f"{error} (population '{role}')")
+                return
+        if len(self.populations) > 2 and len(counts) > 1:
+            message = f"populations of different sizes give different numbers of collaborators: {counts}"
+            yield Fault(("collaboration",), message)
+        if "aggregator" in self.chosen:
+            for count in sorted(counts):
+                check = functools.partial(self.chosen["aggregator"].check, count)
+                yield from _refusal(("aggregator",), check, involves=("collaboration",))
+
+    def _roles(self) -> Iterator[Fault]:
+        if not self.complete:
+            return
+        provided: list[str] = []
+        for role, population in self.populations.items():
+            encoder = population.encoder.component
+            path = ("populations", role, "encoder")
+            for needed in encoder.requires:
+                if needed not in provided:
+                    yield Fault(path, f"needs the role '{needed}' from a population before it")
+            for given in encoder.provides:
+                if given in provided:
+                    yield Fault(path, f"provides the role '{given}', which another population provides too")
+            provided += encoder.provides
+        for needed in getattr(self.chosen.get("simulator"), "requires", ()):
+            if needed not in provided:
+                yield Fault(("simulator",), f"needs the role '{needed}', which no population provides")
+
+    def _record(self) -> Iterator[Fault]:
+        if "simulator" in self.chosen and "objective" in self.chosen:
+            check = functools.partial(self.chosen["simulator"].check, self.chosen["objective"].record)
+            yield from _refusal(("objective",), check, involves=("simulator",))
+
+
+def _breaches(offer: Offer, component: Any) -> Iterator[str]:
+    """Yield what keeps a component from being one of its kind."""
+    where = f"{offer.kind} '{offer.name}' of plugin {offer.source}"
+    protocol = KINDS[offer.kind].protocol
+    members = sorted(name for name in dir(protocol) if not name.startswith("_"))
+    missing = [name for name in members if not hasattr(component, name)]
+    if missing:
+        yield f"{where} has no {' and no '.join(missing)}"
+    if not _is_frozen(component):
+        yield f"{where} is no frozen attrs class: its options could change while a run goes on"
+
+
+def _is_frozen(component: Any) -> bool:
+    try:
+        component.no_such_option = None
+    except AttributeError as error:  # slots forbid it too, but not a change of the options
+        return isinstance(error, attrs.exceptions.FrozenInstanceError)
+    return False
+
+
+def _refusal(
+    path: tuple[str, ...], check: Callable[[], object], involves: tuple[str, ...] = ()
+) -> Iterator[Fault]:
+    try:
+        check()
+    except ConfigurationError as error:
+        yield Fault(path, str(error), involves)

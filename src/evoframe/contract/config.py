@@ -1,0 +1,169 @@
+"""A configuration: everything that decides a run, as frozen classes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any, Generic, TypeVar
+
+import attrs
+import tomli_w
+from attrs import validators
+
+from evoframe.config.layers import COMPONENTS, Tree, as_read
+from evoframe.contract.protocols import (
+    Aggregator,
+    CollaborationStrategy,
+    Encoder,
+    Evolver,
+    Executor,
+    Objective,
+    Simulator,
+)
+from evoframe.documents.structuring import unstructure
+from evoframe.registry.registry import Plugins, Source
+
+__all__ = [
+    "Chosen",
+    "PluginSettings",
+    "PopulationConfig",
+    "RunConfig",
+    "RunSettings",
+    "is_role",
+]
+
+C = TypeVar("C")
+
+
+@attrs.frozen
+class RunSettings:
+    """The table ``[run]``.
+
+    Attributes:
+        seed: The one seed from which all random streams derive.
+        generations: How often each population reproduces (the paper: 200, so 400 turns of two populations).
+    """
+
+    seed: int = attrs.field(default=1, validator=validators.ge(0))
+    generations: int = attrs.field(default=200, validator=validators.ge(0))
+
+
+@attrs.frozen
+class PluginSettings:
+    """The table ``[plugins]``.
+
+    Attributes:
+        block: Distributions whose plugins are not used.
+        require: Distributions whose plugins must be usable.
+    """
+
+    block: tuple[str, ...] = ()
+    require: tuple[str, ...] = ()
+
+
+@attrs.frozen
+class Chosen(Generic[C]):
+    """A component that was chosen by name.
+
+    Attributes:
+        name: Its name in the configuration.
+        component: The instance, with its options.
+        source: The plugin that offers it.
+    """
+
+    name: str
+    component: C
+    source: Source
+
+
+@attrs.frozen
+class PopulationConfig:
+    """The table ``[populations.ROLE]``.
+
+    Attributes:
+        size: Number of individuals.
+        encoder: Decodes the networks of its genomes.
+        evolver: Evolves its genomes.
+    """
+
+    size: int
+    encoder: Chosen[Encoder]
+    evolver: Chosen[Evolver]
+
+
+@attrs.frozen
+class RunConfig:
+    """Everything that decides a run, resolved and checked.
+
+    Attributes:
+        run: Seed and length.
+        populations: Role -> population, in the order in which they take turns and are decoded.
+        collaboration: Chooses collaborators.
+        aggregator: Folds scores into fitness.
+        simulator: Simulates designs.
+        objective: Scores outcomes.
+        executor: Spreads simulations over workers.
+        plugins: What is blocked and required.
+        label: Name of the preset or file, for the default directory.
+        discovered: The plugins that the components come from.
+    """
+
+    run: RunSettings
+    populations: Mapping[str, PopulationConfig]
+    collaboration: Chosen[CollaborationStrategy]
+    aggregator: Chosen[Aggregator]
+    simulator: Chosen[Simulator]
+    objective: Chosen[Objective]
+    executor: Chosen[Executor]
+    plugins: PluginSettings = attrs.field(factory=PluginSettings)
+    label: str = attrs.field(default="run", eq=False)
+    discovered: Plugins = attrs.field(factory=Plugins, eq=False, repr=False)
+
+    def components(self) -> Iterator[tuple[str, Chosen[Any]]]:
+        """Yield every chosen component with its dotted key."""
+        for role, population in self.populations.items():
+            yield f"populations.{role}.encoder", population.encoder
+            yield f"populations.{role}.evolver", population.evolver
+        for key in COMPONENTS:
+            yield key, getattr(self, key)
+
+    def tables(self) -> Tree:
+        """Return the configuration as TOML tables, every default written out."""
+        populations = {
+            role: {
+                "size": population.size,
+                "encoder": _table(population.encoder),
+                "evolver": _table(population.evolver),
+            }
+            for role, population in self.populations.items()
+        }
+        return {
+            "extends": False,
+            "run": unstructure(self.run),
+            "populations": populations,
+            **{key: _table(getattr(self, key)) for key in COMPONENTS},
+            "plugins": unstructure(self.plugins),
+        }
+
+    def deciding(self) -> Tree:
+        """Return the tables on which the result depends, all but the executor, as JSON values."""
+        kept = {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
+        return as_read(kept)
+
+    def simulation(self) -> Tree:
+        """Return the tables that say how a design is simulated and scored."""
+        return {key: _table(getattr(self, key)) for key in ("simulator", "objective")}
+
+    def to_toml(self) -> str:
+        """Return the configuration as the text of a TOML file that means the same."""
+        return tomli_w.dumps(self.tables())
+
+
+def is_role(name: str) -> bool:
+    """Return whether a population may be called so."""
+    return re.fullmatch(r"[a-z][a-z0-9_-]*", name) is not None
+
+
+def _table(chosen: Chosen[Any]) -> Tree:
+    options: Tree = unstructure(chosen.component)
+    return {"name": chosen.name, **options}

@@ -1,0 +1,1 @@
+"""Designs that a person names: reading, verifying and exporting them."""

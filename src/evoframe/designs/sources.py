@@ -1,0 +1,134 @@
+"""What a person names to have it simulated, verified or exported: files with designs, and runs."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import attrs
+
+from evoframe.config.layers import Layer, read_layers
+from evoframe.config.resolve import load_config, named_simulator
+from evoframe.contract.config import RunConfig
+from evoframe.contract.values import Design
+from evoframe.errors import ConfigurationError, InputError
+from evoframe.files.reading import is_directory
+from evoframe.record.champion import read_champion
+from evoframe.record.run import Run, load_run
+from evoframe.registry.registry import Plugins
+
+__all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
+
+DEFAULT_PRESET = "paper"
+"""With which designs are simulated that do not say how."""
+
+
+@attrs.frozen
+class Job:
+    """The designs of one file or run, and the configuration that they are simulated with.
+
+    Attributes:
+        path: The file, or the run's directory.
+        config: What simulates and scores them.
+        labels: What a person calls each design.
+        designs: One for each label.
+        run: The run, if its directory was named.
+        score: What the design scored in its run, if it is a champion that is simulated as it was there.
+    """
+
+    path: Path
+    config: RunConfig
+    labels: tuple[str, ...]
+    designs: tuple[Design, ...]
+    run: Run | None = None
+    score: float | None = None
+
+
+def read_job(
+    path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins, *, runs: bool = False
+) -> Job:
+    """Read what *path* names, and decide how it is simulated.
+
+    A run and its ``champion.json`` are simulated as in the run, unless a *preset* is named. Of all other
+    files the simulator says what they hold, and which settings they bring with them; these override the
+    preset's, which is ``paper`` if none is named. *overrides* come last.
+
+    Args:
+        path: A ``champion.json``, a file that the simulator reads, or a run's directory.
+        preset: Name of a preset, or path of a TOML file.
+        overrides: ``key=value``, or layers, as for :func:`~evoframe.load_config`.
+        plugins: The plugins to choose from.
+        runs: Whether *path* may be a run's directory, which stands for its champion.
+
+    Raises:
+        InputError: The file cannot be read, or is something else.
+        ConfigurationError: It cannot be simulated like this.
+    """
+    if is_directory(path):
+        if not runs:
+            raise InputError(f"{path}: cannot be read: Is a directory; that of a run has a champion.json")
+        return _of_run(path, preset, overrides, plugins)
+    if path.suffix == ".json":
+        return _of_champion(path, preset, overrides, plugins)
+    return _of_file(path, preset, overrides, plugins)
+
+
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the file in front of what a component says that knows only its content."""
+    try:
+        yield
+    except (ConfigurationError, InputError) as error:
+        raise type(error)(f"{path}: {error}") from error
+
+
+def _of_run(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
+    run = load_run(path)
+    champion, source = run.champion, preset or path / "config.toml"
+    config = load_config(source, overrides=overrides, plugins=plugins)
+    _check_roles(path, champion.design, config)
+    score = champion.score if preset is None and _changes_nothing(source, (), overrides) else None
+    return Job(path, config, (str(path),), (champion.design,), run, score)
+
+
+def _of_champion(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
+    design, simulation, recorded = read_champion(path)
+    source, own = preset or DEFAULT_PRESET, [] if preset else [Layer(str(path), simulation)]
+    config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
+    _check_roles(path, design, config)
+    score = recorded if preset is None and _changes_nothing(source, own, overrides) else None
+    return Job(path, config, (path.name,), (design,), score=score)
+
+
+def _of_file(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
+    source = preset or DEFAULT_PRESET
+    own = _settings_of(path, source, overrides, plugins)
+    config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
+    read = getattr(config.simulator.component, "read", None)
+    if read is None:
+        raise ConfigurationError(f"the simulator '{config.simulator.name}' reads no files")
+    labels, designs = zip(*read(path), strict=True)
+    return Job(path, config, labels, designs)
+
+
+def _settings_of(path: Path, source: str, overrides: Sequence[str | Layer], plugins: Plugins) -> list[Layer]:
+    """Return the layer of settings that a file brings with it, if it brings any."""
+    simulator = named_simulator(source, overrides, plugins)
+    settings_of = getattr(simulator.component, "settings_of", None) if simulator else None
+    settings = settings_of(path) if settings_of else None
+    if simulator is None or settings is None:
+        return []
+    return [Layer(str(path), {"simulator": {"name": simulator.name, **settings}})]
+
+
+def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
+    missing = [role for role in config.simulator.component.requires if role not in design.roles]
+    if missing:
+        raise InputError(f"{path}: design: has no {' and no '.join(missing)}")
+
+
+def _changes_nothing(source: str | Path, own: Sequence[Layer], overrides: Sequence[str | Layer]) -> bool:
+    """Return whether *overrides* leave simulation and scoring as they are."""
+    alone, together = (read_layers(source, given).merged() for given in (own, [*own, *overrides]))
+    return all(alone.get(key) == together.get(key) for key in ("simulator", "objective"))

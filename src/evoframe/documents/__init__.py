@@ -1,0 +1,1 @@
+"""Trees of values from TOML and JSON: structuring and comparing them."""

@@ -1,0 +1,236 @@
+"""TOML values into typed attrs classes, strictly, with every fault collected and put in a person's words."""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+import numbers
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Literal, TypeVar, get_args, get_origin
+
+import attrs
+import numpy as np
+from cattrs import (
+    ClassValidationError,
+    Converter,
+    ForbiddenExtraKeysError,
+    IterableValidationError,
+    IterableValidationNote,
+)
+from cattrs.gen import make_dict_structure_fn, override
+
+from evoframe.registry.registry import suggestion
+
+__all__ = ["Fault", "StructureError", "structure", "unstructure"]
+
+T = TypeVar("T")
+Path = tuple[str, ...]
+
+
+@attrs.frozen
+class Fault:
+    """One thing wrong with a configuration.
+
+    Attributes:
+        path: The keys that lead to it; an index is part of its key, as in ``weights[1]``.
+        message: What was found, what was expected, what to do.
+        involves: Another key that has its part in it, if there is one.
+    """
+
+    path: Path
+    message: str
+    involves: Path = ()
+
+
+class StructureError(ValueError):
+    """Values that do not fit their type.
+
+    Attributes:
+        faults: All that is wrong, in order.
+    """
+
+    def __init__(self, faults: list[Fault]) -> None:
+        super().__init__("; ".join(f"{'.'.join(fault.path)}: {fault.message}" for fault in faults))
+        self.faults = faults
+
+
+def structure(value: Any, target: type[T], path: Path) -> T:
+    """Return *value* as an instance of *target*.
+
+    Raises:
+        StructureError: With all faults, their paths beginning with *path*.
+    """
+    try:
+        return _converter().structure(value, target)
+    except Exception as error:
+        faults = list(_faults(error, path))
+        raise StructureError(faults) from error
+
+
+def unstructure(instance: Any) -> Any:
+    """Return *instance* as TOML values; options that are ``None`` are left out, as TOML has no such value."""
+    return _without_none(_converter().unstructure(instance))
+
+
+def found(value: Any) -> str:
+    """Return *value* as a person wrote it."""
+    return json.dumps(value, default=str, ensure_ascii=False)
+
+
+def _without_none(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _without_none(inner) for key, inner in value.items() if inner is not None}
+    if isinstance(value, list | tuple):
+        return [_without_none(inner) for inner in value]
+    return value
+
+
+@functools.cache
+def _converter() -> Converter:
+    converter = Converter(forbid_extra_keys=True, detailed_validation=True)
+    converter.register_structure_hook(bool, _bool)
+    converter.register_structure_hook(int, _int)
+    converter.register_structure_hook(float, _float)
+    converter.register_structure_hook(str, _str)
+    converter.register_structure_hook_func(functools.partial(_is_a, Literal), _literal)
+    converter.register_structure_hook_func(
+        functools.partial(_is_a, tuple), functools.partial(_tuple, converter)
+    )
+    converter.register_structure_hook_factory(attrs.has, functools.partial(_class_hook, converter))
+    return converter
+
+
+def _is_a(origin: Any, type_: Any) -> bool:
+    return get_origin(type_) is origin
+
+
+def _bool(value: Any, _: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError(f"expected true or false, found {found(value)}")
+    return value
+
+
+def _int(value: Any, _: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise TypeError(f"expected a whole number, found {found(value)}")
+    return int(value)
+
+
+def _float(value: Any, _: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"expected a number, found {found(value)}")
+    if not math.isfinite(value):
+        raise ValueError(f"expected a finite number, found {value}")
+    return float(value)
+
+
+def _str(value: Any, _: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"expected a string, found {found(value)}")
+    return value
+
+
+def _literal(value: Any, target: Any) -> Any:
+    choices = get_args(target)
+    if value not in choices:
+        listed = ", ".join(found(choice) for choice in choices)
+        raise ValueError(f"expected one of {listed}, found {found(value)}")
+    return value
+
+
+def _tuple(converter: Converter, value: Any, target: Any) -> tuple[Any, ...]:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple):
+        raise TypeError(f"expected a list, found {found(value)}")
+    types = get_args(target)
+    if len(types) == 2 and types[1] is Ellipsis:
+        types = (types[0],) * len(value)
+    if len(types) != len(value):
+        raise ValueError(f"expected a list of {len(types)}, found {found(value)}")
+    items, errors = [], []
+    for index, (item, type_) in enumerate(zip(value, types, strict=True)):
+        try:
+            items.append(converter.structure(item, type_))
+        except Exception as error:  # noqa: BLE001 - collected, and raised below with the others
+            error.add_note(IterableValidationNote(f"item {index}", index, type_))
+            errors.append(error)
+    if errors:
+        raise IterableValidationError("items of a list", errors, target)
+    return tuple(items)
+
+
+def _class_hook(converter: Converter, class_: type[Any]) -> Callable[[Any, Any], Any]:
+    """Structure a table into *class_*, running each field's validator beside the type checks.
+
+    attrs alone would stop at the first validator that fails; here every fault of a table is reported.
+    """
+    overrides = {
+        field.name: override(struct_hook=functools.partial(_field, converter, field))
+        for field in attrs.fields(attrs.resolve_types(class_))
+        if field.init
+    }
+    hook = make_dict_structure_fn(
+        class_,
+        converter,
+        _cattrs_forbid_extra_keys=True,
+        _cattrs_detailed_validation=True,
+        **overrides,  # type: ignore[arg-type]
+    )
+
+    def structure_table(value: Any, target: Any) -> Any:
+        if not isinstance(value, Mapping):
+            raise TypeError(f"expected a table, found {found(value)}")
+        return hook(value, target)
+
+    return structure_table
+
+
+def _field(converter: Converter, field: attrs.Attribute[Any], value: Any, _: Any) -> Any:
+    structured = converter.structure(value, field.type)  # type: ignore[arg-type]
+    if field.validator is not None:
+        # A validator that looks at other fields finds none yet: it has its turn at construction.
+        try:
+            field.validator(None, field, structured)
+        except AttributeError:
+            return structured
+    return structured
+
+
+def _faults(error: BaseException, path: Path) -> Iterator[Fault]:
+    if isinstance(error, ClassValidationError):
+        noted, others = error.group_exceptions()
+        for inner, note in noted:
+            yield from _faults(inner, (*path, note.name))
+        for inner in others:
+            yield from _faults(inner, path)
+    elif isinstance(error, IterableValidationError):
+        noted_items, others = error.group_exceptions()
+        for inner, index_note in noted_items:
+            yield from _faults(inner, (*path[:-1], f"{path[-1]}[{index_note.index}]"))
+        for inner in others:
+            yield from _faults(inner, path)
+    elif isinstance(error, ForbiddenExtraKeysError):
+        for key in sorted(error.extra_fields):
+            yield Fault((*path, key), _unknown_key(key, error.cl))
+    elif isinstance(error, KeyError):  # whose key may end the path already
+        key = str(error.args[0])
+        yield Fault(path if path[-1] == key else (*path, key), "is missing")
+    else:
+        yield Fault(path, _plain(str(error)))
+
+
+def _unknown_key(key: str, class_: type[Any]) -> str:
+    options = [field.name for field in attrs.fields(class_) if field.init]
+    return f"unknown option{suggestion(key, options, 'options')}"
+
+
+_VALIDATOR = re.compile(r"'\w+' (must .*): (.*)", re.DOTALL)
+
+
+def _plain(message: str) -> str:
+    """Turn the words of attrs' validators (``'n' must be >= 1: 0``) into those of all other messages."""
+    match = _VALIDATOR.fullmatch(message)
+    return f"{match[1]}, found {match[2]}" if match else message

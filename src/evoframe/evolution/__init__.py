@@ -1,0 +1,1 @@
+"""The coevolution engine: populations, the loop, and the evaluation of designs. No files, no terminal."""

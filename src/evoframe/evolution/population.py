@@ -1,0 +1,239 @@
+"""One population of a run: its genomes, their fitness, and its history in a few numbers."""
+
+from __future__ import annotations
+
+import json
+import math
+import numbers
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from attrs.validators import ge
+from numpy.typing import NDArray
+
+from evoframe.contract.blame import blaming
+from evoframe.contract.protocols import Encoder, EvolverRun, Network
+from evoframe.contract.values import Design, Member, PopulationReport
+from evoframe.documents.structuring import structure
+from evoframe.errors import ComponentError, RunError
+
+__all__ = ["Population"]
+
+
+@attrs.define
+class Population:
+    """A population that evolves one role.
+
+    Attributes:
+        name: The role.
+        encoder: Decodes its networks.
+        evolver: Evolves its genomes.
+        rng: The stream with which its collaborators are chosen.
+        generation: How often it has reproduced.
+        genomes: The current genomes.
+        members: What is known of each of them.
+    """
+
+    name: str
+    encoder: Encoder
+    evolver: EvolverRun
+    rng: np.random.Generator
+    generation: int = -1
+    genomes: Sequence[Any] = ()
+    members: tuple[Member, ...] = ()
+    _networks: dict[int, Network] = attrs.field(factory=dict, init=False)
+    _best_so_far: float | None = attrs.field(default=None, init=False)
+    _lowest: float | None = attrs.field(default=None, init=False)
+    _champion: Member | None = attrs.field(default=None, init=False)
+
+    def reproduce(self) -> None:
+        """Replace the genomes by the next ones; at first, by the initial ones."""
+        with blaming(self._evolver):
+            genomes = self.evolver.ask()
+            members = tuple(self._plain(member) for member in self.evolver.members())
+            counts = len(genomes), len(members)
+        if counts[0] < 1 or counts[0] != counts[1] or counts[0] != (len(self.genomes) or counts[0]):
+            wanted = f", expected {len(self.genomes)} of each" if self.genomes else ""
+            raise ComponentError(self._evolver, f"gave {counts[0]} genomes and {counts[1]} members{wanted}")
+        self.genomes, self.members = genomes, members
+        self.generation += 1
+        self._networks.clear()
+
+    def network(self, position: int) -> Network:
+        """Return the network that the genome at *position* expresses."""
+        if position not in self._networks:
+            with blaming(self._evolver, self.called(position)):
+                self._networks[position] = self.evolver.express(self.genomes[position])
+        return self._networks[position]
+
+    def dump(self, position: int) -> Any:
+        """Return the genome at *position* as JSON values."""
+        with blaming(self._evolver, self.called(position)):
+            genome = self.evolver.dump(self.genomes[position])
+            json.dumps(genome, allow_nan=False)  # what cannot be saved is said here, by whose it is
+            return genome
+
+    def decode(self, position: int, design: Design) -> Design:
+        """Return a design to which the genome at *position* has added what it provides.
+
+        Raises:
+            ComponentError: Evolver or encoder failed, or the design lacks a role that the encoder provides.
+        """
+        network = self.network(position)
+        with blaming(self._encoder, self.called(position)):
+            decoded = self.encoder.decode(network, design)
+            lacking = [role for role in self.encoder.provides if role not in decoded.roles]
+        if lacking:
+            raise ComponentError(self._encoder, f"left out the role '{lacking[0]}'", self.called(position))
+        return decoded
+
+    def called(self, position: int) -> str:
+        """Return what a person calls the individual at *position*."""
+        return f"{self.name} {self.members[position].id}"
+
+    @property
+    def _evolver(self) -> str:
+        return f"populations.{self.name}.evolver"
+
+    @property
+    def _encoder(self) -> str:
+        return f"populations.{self.name}.encoder"
+
+    def judge(self, fitness: Sequence[float | None], floor: float | None) -> None:
+        """Take the fitness of all genomes.
+
+        Args:
+            fitness: One value a genome; ``None`` where a simulation diverged. Such a genome gets the lowest
+                fitness among the clean ones of this turn, or else the lowest that the population has had.
+            floor: What it gets if there has been no clean one at all: the lowest score of this turn.
+
+        Raises:
+            RunError: There is not even such a score.
+        """
+        lowest = min((value for value in fitness if value is not None), default=self._lowest)
+        if lowest is None:
+            lowest = floor
+        if lowest is None:
+            raise RunError(
+                "every simulation of the initial meeting diverged, so there is nothing to compare; "
+                "check the simulator's options (time step, stiffness, density)"
+            )
+        self._lowest = lowest if self._lowest is None else min(lowest, self._lowest)
+        told = np.array([lowest if value is None else value for value in fitness])
+        with blaming(self._evolver):
+            self.evolver.tell(told, {})
+        self._note_members(told, [value is None for value in fitness])
+        self._note_champion()
+
+    def fittest(self) -> int:
+        """Return the position of the fittest member; a diverged one only if there is no other.
+
+        Raises:
+            RunError: There are no members yet, or they were not judged.
+        """
+        if not self.members:
+            raise RunError(f"population '{self.name}' has no members before the first turn")
+        return max(range(len(self.members)), key=lambda position: (_rank(self.members[position]), -position))
+
+    def report(self) -> PopulationReport:
+        """Return what happened to this population in its latest turn; it must have been judged."""
+        if self._champion is None or self._best_so_far is None:
+            raise RunError(f"population '{self.name}' was not judged yet")
+        fitness = [_fitness(member) for member in self.members]
+        return PopulationReport(
+            population=self.name,
+            generation=self.generation,
+            members=self.members,
+            best=fitness[self.fittest()],
+            best_so_far=self._best_so_far,
+            standing_champion=_fitness(self._champion),
+            mean=math.fsum(fitness) / len(fitness),
+        )
+
+    def state(self) -> dict[str, Any]:
+        """Return everything needed to continue, as JSON values."""
+        with blaming(self._evolver):
+            evolver = self.evolver.state()
+        return {
+            "evolver": evolver,
+            "rng": self.rng.bit_generator.state,
+            "generation": self.generation,
+            "diverged": [member.diverged for member in self.members],
+            "best_so_far": self._best_so_far,
+            "lowest": self._lowest,
+            "champion": attrs.asdict(self._champion) if self._champion else None,
+        }
+
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Raises:
+            StructureError: It is no such state; says where.
+            ValueError: The evolver or a random stream says so.
+        """
+        saved = structure(state, _Saved, (self.name,))
+        self.evolver.restore(saved.evolver)
+        self.rng.bit_generator.state = saved.rng
+        self.generation = saved.generation
+        self.genomes = self.evolver.genomes()
+        self._networks.clear()
+        self.members = tuple(
+            attrs.evolve(member, diverged=diverged)
+            for member, diverged in zip(map(self._plain, self.evolver.members()), saved.diverged, strict=True)
+        )
+        self._best_so_far, self._lowest, self._champion = saved.best_so_far, saved.lowest, saved.champion
+
+    def _note_members(self, fitness: NDArray[np.float64], diverged: Sequence[bool]) -> None:
+        with blaming(self._evolver):
+            self.members = tuple(
+                attrs.evolve(self._plain(member), fitness=float(value), diverged=failed)
+                for member, value, failed in zip(self.evolver.members(), fitness, diverged, strict=True)
+            )
+
+    def _plain(self, member: Member) -> Member:
+        """Return a member whose numbers are Python's, as the record wants them."""
+        given = (member.id, member.genome_size, member.age)
+        wrong = [value for value in given if not isinstance(value, numbers.Integral)]
+        if not isinstance(member.species, numbers.Integral | None):
+            wrong.append(member.species)
+        if wrong:
+            raise ComponentError(self._evolver, f"gave a member with {wrong[0]!r} where an integer belongs")
+        key, size, age = map(int, given)
+        species = None if member.species is None else int(member.species)
+        return attrs.evolve(member, id=key, genome_size=size, age=age, species=species)
+
+    def _note_champion(self) -> None:
+        """Let the fittest challenge the champion at the champion's latest fitness (as the authors do)."""
+        best = self.members[self.fittest()]
+        if self._best_so_far is None or _fitness(best) > self._best_so_far:
+            self._best_so_far = _fitness(best)
+        latest = {member.id: member for member in self.members}
+        if self._champion is not None:
+            self._champion = latest.get(self._champion.id, self._champion)
+        if self._champion is None or _rank(best) > _rank(self._champion):
+            self._champion = best
+
+
+@attrs.frozen
+class _Saved:
+    """What :meth:`Population.state` returns, as it is read again."""
+
+    evolver: Any
+    rng: dict[str, Any]
+    generation: int = attrs.field(validator=ge(-1))
+    diverged: tuple[bool, ...]
+    best_so_far: float | None
+    lowest: float | None
+    champion: Member | None
+
+
+def _fitness(member: Member) -> float:
+    if member.fitness is None:
+        raise RunError(f"genome {member.id} was not judged yet")
+    return member.fitness
+
+
+def _rank(member: Member) -> tuple[bool, float]:
+    return not member.diverged, _fitness(member)

@@ -1,0 +1,1 @@
+"""Files on disk: reading what may come from anyone, atomic writing, locks."""

@@ -1,0 +1,1 @@
+"""A run's directory: what is written while a run goes on, and the run read back from it."""

@@ -1,0 +1,195 @@
+"""Is a score real? A design simulated again with one thing changed at a time."""
+
+from __future__ import annotations
+
+import functools
+import math
+import statistics
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, TypeGuard
+
+import attrs
+
+from evoframe.contract.protocols import ExecutorRun, Objective, Simulator, unit_of
+from evoframe.contract.values import Design, Record, Variant
+from evoframe.evolution.evaluation import Score, simulated
+
+__all__ = [
+    "UNCHANGED",
+    "VERIFICATION_FILE",
+    "Finding",
+    "VariedSimulator",
+    "Verification",
+    "can_verify",
+    "verification_from_json",
+    "verify_design",
+]
+
+UNCHANGED = "unchanged"
+"""Name of the simulation that the others are compared with."""
+
+VERIFICATION_FILE = "verification.json"
+"""Where a run's directory has the verification of its champion."""
+
+_FORMAT = 1
+
+
+class VariedSimulator(Simulator, Protocol):
+    """A simulator that offers variants."""
+
+    def variants(self, design: Design, record: Record) -> Sequence[Variant]:
+        """Return simulations of *design* with one thing changed in each."""
+
+
+@attrs.frozen
+class Finding:
+    """What became of a design with one thing changed.
+
+    Attributes:
+        name: What was changed.
+        scores: One for each draw, where the change is random; otherwise one.
+    """
+
+    name: str
+    scores: tuple[Score, ...]
+
+    @property
+    def values(self) -> list[float]:
+        """The scores of the draws that did not diverge, ascending."""
+        return sorted(score.value for score in self.scores if score.value is not None)
+
+    @property
+    def median(self) -> float | None:
+        """The median of the draws that did not diverge, in the objective's unit; ``None`` if all did."""
+        values = self.values
+        return statistics.median(values) if values else None
+
+    @property
+    def diverged_at(self) -> list[int]:
+        """The steps at which draws diverged, ascending."""
+        return sorted(score.diverged_at for score in self.scores if score.diverged_at is not None)
+
+
+@attrs.frozen
+class Verification:
+    """The table of paper.md, "What the published setting really rewards", of one design.
+
+    Attributes:
+        unchanged: The design as it is.
+        findings: What became of it with one thing changed, in the order of the simulator.
+        unit: Of all scores; empty if the objective does not say.
+        score: What the design scored in its run, if it is a champion that is simulated as it was there.
+    """
+
+    unchanged: Score
+    findings: tuple[Finding, ...]
+    unit: str = ""
+    score: float | None = None
+
+    @property
+    def rows(self) -> tuple[Finding, ...]:
+        """The unchanged design as a finding, and then the others."""
+        return (Finding(UNCHANGED, (self.unchanged,)), *self.findings)
+
+    def share(self, finding: Finding) -> float | None:
+        """Return the median of *finding* as a part of the unchanged score; ``None`` where there is none."""
+        if finding.median is None or not self.unchanged.value:
+            return None
+        share = finding.median / self.unchanged.value
+        return share if math.isfinite(share) else None
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the table as JSON values, exact to the last bit."""
+        return {
+            "format": _FORMAT,
+            "score": self.score,
+            "unit": self.unit,
+            "variants": [self._row(finding) for finding in self.rows],
+        }
+
+    def _row(self, finding: Finding) -> dict[str, Any]:
+        values = finding.values
+        return {
+            "name": finding.name,
+            "median": finding.median,
+            "least": values[0] if values else None,
+            "greatest": values[-1] if values else None,
+            "share": self.share(finding),
+            "draws": [{"score": score.value, "diverged_at": score.diverged_at} for score in finding.scores],
+        }
+
+
+def can_verify(simulator: Simulator) -> TypeGuard[VariedSimulator]:
+    """Return whether *simulator* offers the variants that a verification is made of."""
+    return hasattr(simulator, "variants")
+
+
+def verify_design(
+    simulator: VariedSimulator,
+    objective: Objective,
+    design: Design,
+    workers: ExecutorRun,
+    score: float | None = None,
+) -> Verification:
+    """Simulate a design as it is, and in all variants of its simulator.
+
+    Args:
+        simulator: Simulates it, and offers the variants.
+        objective: Scores all of them.
+        design: What is verified.
+        workers: Simulate at the same time; the result does not depend on them.
+        score: What the design scored in its run, if it is a champion.
+
+    Raises:
+        RunError: The simulator or the objective did not keep its word.
+    """
+    variants = list(simulator.variants(design, objective.record))
+    unchanged = Variant(UNCHANGED, simulator, design, objective.record)
+    first, *others = workers.map(functools.partial(_score, objective), [unchanged, *variants])
+    drawn: dict[str, list[Score]] = {}
+    for variant, given in zip(variants, others, strict=True):
+        drawn.setdefault(variant.name, []).append(given)
+    findings = tuple(Finding(name, tuple(scores)) for name, scores in drawn.items())
+    return Verification(first, findings, unit_of(objective), score)
+
+
+def verification_from_json(document: Any) -> Verification:
+    """Return the verification that :meth:`Verification.to_json` described.
+
+    Raises:
+        ValueError: It is not such a document; says why.
+    """
+    if not isinstance(document, Mapping) or "variants" not in document:
+        raise ValueError("this JSON is no verification of evoframe")
+    if document.get("format") is True or document.get("format") != _FORMAT:
+        raise ValueError(f"format {document.get('format')!r}, but this evoframe reads format {_FORMAT}")
+    try:
+        rows = [_finding(row) for row in document["variants"]]
+        if not rows or len(rows[0].scores) != 1:
+            raise ValueError("expected one score of the unchanged design")  # noqa: TRY301 - as all others
+        verification = Verification(rows[0].scores[0], tuple(rows[1:]), document["unit"], document["score"])
+        same = verification.to_json() == document
+    except ValueError as error:
+        raise ValueError(f"not as evoframe writes it: {error}") from error
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ValueError("not as evoframe writes it: its rows are damaged") from error
+    if not same:
+        raise ValueError("not as evoframe writes it: its figures do not follow from its scores")
+    return verification
+
+
+def _score(objective: Objective, variant: Variant) -> Score:
+    [score] = simulated(variant.simulator, [variant.design], variant.record, objective)
+    return score
+
+
+def _finding(row: Mapping[str, Any]) -> Finding:
+    return Finding(row["name"], tuple(_draw(draw["score"], draw["diverged_at"]) for draw in row["draws"]))
+
+
+def _draw(value: Any, diverged_at: Any) -> Score:
+    has_value = isinstance(value, float) and math.isfinite(value) and diverged_at is None
+    has_diverged = value is None and type(diverged_at) is int
+    if not (has_value or has_diverged):
+        raise ValueError(f"expected a score or the step of a divergence, found {value!r} and {diverged_at!r}")
+    return Score(value, diverged_at)

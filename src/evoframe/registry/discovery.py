@@ -1,0 +1,103 @@
+"""Discovery of plugins, each load guarded."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import importlib.util
+import os
+import sys
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+from types import ModuleType
+
+from evoframe.errors import PluginError, PluginWarning
+from evoframe.registry.registry import Plugins, Skipped, Source, normalized
+
+__all__ = ["discover"]
+
+GROUP = "evoframe"
+"""Group of the entry points of plugins."""
+
+
+def discover(modules: Iterable[str] = ()) -> Plugins:
+    """Load the installed plugins and the local *modules*.
+
+    The environment variables ``EVOFRAME_PLUGINS_BLOCK`` and ``EVOFRAME_PLUGINS_REQUIRE`` name distributions,
+    separated by commas, that are not loaded, or that must be.
+
+    Args:
+        modules: Importable names, or paths of Python files, of plugins that no distribution installs.
+
+    Raises:
+        PluginError: A local module, or a required distribution, cannot be used.
+
+    Warns:
+        PluginWarning: An installed plugin cannot be used; the others are.
+    """
+    plugins = Plugins()
+    blocked = {normalized(name) for name in _listed("EVOFRAME_PLUGINS_BLOCK")}
+    for source, entry_point in _entry_points():
+        if normalized(source.distribution) not in blocked:
+            _load_guarded(plugins, source, entry_point)
+    for module in dict.fromkeys(modules):
+        _load_local(plugins, module)
+    plugins.require(_listed("EVOFRAME_PLUGINS_REQUIRE"))
+    return plugins
+
+
+def _listed(variable: str) -> list[str]:
+    return [name.strip() for name in os.environ.get(variable, "").split(",") if name.strip()]
+
+
+def _entry_points() -> list[tuple[Source, importlib.metadata.EntryPoint]]:
+    """Return the entry points of the group, in an order that does not depend on the file system."""
+    found = []
+    for entry_point in importlib.metadata.entry_points(group=GROUP):
+        distribution = entry_point.dist
+        name = distribution.name if distribution else "unknown"
+        version = distribution.version if distribution else "unknown"
+        found.append((Source(name, version, entry_point.name), entry_point))
+    return sorted(found, key=lambda pair: pair[0])
+
+
+def _load_guarded(plugins: Plugins, source: Source, entry_point: importlib.metadata.EntryPoint) -> None:
+    try:
+        plugins.add(entry_point.load(), source)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - any fault of a plugin is only that plugin's
+        cause = str(error) if isinstance(error, PluginError) else f"{type(error).__name__}: {error}"
+        plugins.skipped.append(Skipped(source, cause))
+        warnings.warn(f"plugin {source} is skipped: {cause}", PluginWarning, stacklevel=3)
+
+
+def _load_local(plugins: Plugins, module: str) -> None:
+    name = Path(module).stem if module.endswith(".py") else module
+    try:
+        plugins.add(_import_local(module, name), Source(name, "local", name))
+    except (Exception, SystemExit) as error:
+        cause = str(error) if isinstance(error, PluginError) else f"{type(error).__name__}: {error}"
+        raise PluginError(f"plugin module '{module}' cannot be used: {cause}") from error
+
+
+def _import_local(module: str, name: str) -> ModuleType:
+    if not module.endswith(".py"):
+        here = str(Path.cwd())
+        if here not in sys.path:
+            sys.path.insert(0, here)
+        return importlib.import_module(module)
+    path = Path(module)
+    if not path.is_file():
+        raise PluginError("there is no such file")
+    private = f"evoframe_local_{name}"  # so that my random.py does not stand in for Python's
+    spec = importlib.util.spec_from_file_location(private, path)
+    if spec is None or spec.loader is None:
+        raise PluginError("it is not a Python module")
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[private] = loaded  # attrs looks modules up while it makes classes
+    try:
+        spec.loader.exec_module(loaded)
+    except BaseException:
+        del sys.modules[private]
+        raise
+    return loaded

@@ -1,0 +1,157 @@
+"""The contract between the core and its plugins.
+
+A plugin is one module with functions of these names, marked with :data:`evoframe.hookimpl`, and one entry
+point in the group ``evoframe``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pluggy
+
+from evoframe.contract.protocols import (
+    Aggregator,
+    CollaborationStrategy,
+    Encoder,
+    Evolver,
+    Executor,
+    Objective,
+    Simulator,
+)
+from evoframe.contract.values import Turn
+
+if TYPE_CHECKING:
+    import click
+
+    from evoframe.contract.config import RunConfig
+
+__all__ = ["hookimpl", "hookspec"]
+
+hookspec = pluggy.HookspecMarker("evoframe")
+hookimpl = pluggy.HookimplMarker("evoframe")
+"""Marks a function of a plugin as the implementation of a hook."""
+
+
+@hookspec
+def evoframe_simulators() -> Mapping[str, type[Simulator]]:  # type: ignore[empty-body]
+    """Offer simulators of designs.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_encoders() -> Mapping[str, type[Encoder]]:  # type: ignore[empty-body]
+    """Offer encoders, which decode networks into parts of a design.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_strategies() -> Mapping[str, type[CollaborationStrategy]]:  # type: ignore[empty-body]
+    """Offer strategies that choose collaborators.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_aggregators() -> Mapping[str, type[Aggregator]]:  # type: ignore[empty-body]
+    """Offer fitness aggregators.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_evolvers() -> Mapping[str, type[Evolver]]:  # type: ignore[empty-body]
+    """Offer evolutionary algorithms.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_objectives() -> Mapping[str, type[Objective]]:  # type: ignore[empty-body]
+    """Offer objectives, which score outcomes.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_executors() -> Mapping[str, type[Executor]]:  # type: ignore[empty-body]
+    """Offer ways to spread simulations over workers.
+
+    Returns:
+        Name used in configuration files -> frozen attrs class; its fields are its options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_run_started(config: RunConfig, directory: Path) -> None:
+    """Observe that a run starts, or goes on.
+
+    Args:
+        config: The resolved configuration.
+        directory: The run's directory.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_turn_finished(turn: Turn) -> None:
+    """Observe a turn that is already saved.
+
+    An observer that raises is disabled with a warning; the run and the other observers go on.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_run_finished(directory: Path, completed: bool) -> None:
+    """Observe the end of a run.
+
+    Args:
+        directory: The run's directory.
+        completed: False if the run was interrupted.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_commands(cli: click.Group) -> None:
+    """Add commands to the program.
+
+    Args:
+        cli: The click group ``evoframe``.
+
+    .. versionadded:: 0.1
+    """

@@ -1,0 +1,233 @@
+"""The registry: what plugins offer, who observes, and who was skipped."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import attrs
+import pluggy
+
+from evoframe.contract import protocols
+from evoframe.errors import ConfigurationError, PluginError
+from evoframe.registry import hookspecs
+
+__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "Source", "normalized", "suggestion"]
+
+_COMPONENT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
+
+
+@attrs.frozen
+class Kind:
+    """A kind of component.
+
+    Attributes:
+        hook: The hook that offers components of this kind.
+        protocol: What they must do.
+    """
+
+    hook: str
+    protocol: type[Any]
+
+
+KINDS: Mapping[str, Kind] = {
+    "aggregator": Kind("evoframe_aggregators", protocols.Aggregator),
+    "encoder": Kind("evoframe_encoders", protocols.Encoder),
+    "evolver": Kind("evoframe_evolvers", protocols.Evolver),
+    "executor": Kind("evoframe_executors", protocols.Executor),
+    "objective": Kind("evoframe_objectives", protocols.Objective),
+    "simulator": Kind("evoframe_simulators", protocols.Simulator),
+    "strategy": Kind("evoframe_strategies", protocols.CollaborationStrategy),
+}
+"""Name of a kind in messages -> the kind."""
+
+
+@attrs.frozen(order=True)
+class Source:
+    """Where a plugin comes from.
+
+    Attributes:
+        distribution: Name of the installed distribution, or of the local module given with ``-p``.
+        version: The distribution's version; ``local`` for a local module.
+        entry_point: Name of the entry point in the group ``evoframe``.
+    """
+
+    distribution: str
+    version: str
+    entry_point: str
+
+    def __str__(self) -> str:
+        return f"'{self.entry_point}' of {self.distribution} {self.version}"
+
+
+@attrs.frozen
+class Offer:
+    """A component that a plugin offers.
+
+    Attributes:
+        kind: One of :data:`KINDS`.
+        name: The name in configuration files.
+        component: The frozen attrs class.
+        source: The plugin that offers it.
+    """
+
+    kind: str
+    name: str
+    component: type[Any]
+    source: Source
+
+
+@attrs.frozen
+class Skipped:
+    """A plugin that could not be used, and why."""
+
+    source: Source
+    cause: str
+
+
+def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
+    """Return how a message about an unknown *word* ends.
+
+    Args:
+        word: What was written.
+        known: What could have been meant.
+        label: What to call a list of all that is known; without it there is none.
+    """
+    words = list(known)
+    close = difflib.get_close_matches(word, words, n=1, cutoff=0.5)
+    meant = f"; did you mean '{close[0]}'?" if close else ""
+    listed = f"{'' if meant else ';'} {label}: {', '.join(words) or 'none'}" if label else ""
+    return meant + listed
+
+
+def _new_manager() -> pluggy.PluginManager:
+    manager = pluggy.PluginManager("evoframe")
+    manager.add_hookspecs(hookspecs)
+    return manager
+
+
+@attrs.define
+class Plugins:
+    """The plugins of this process: what they offer, who observes, and who was skipped."""
+
+    manager: pluggy.PluginManager = attrs.field(factory=_new_manager)
+    offers: list[Offer] = attrs.field(factory=list)
+    skipped: list[Skipped] = attrs.field(factory=list)
+
+    def add(self, plugin: object, source: Source) -> None:
+        """Register *plugin*, or none of it.
+
+        Raises:
+            PluginError: It implements no hook or an unknown one, or offers something that is no component.
+        """
+        name = f"{source.distribution}:{source.entry_point}"
+        if self.manager.has_plugin(name):
+            raise PluginError("there is a plugin of that name already")
+        try:
+            self.manager.register(plugin, name=name)
+            _check_hooks(self.manager, plugin)
+            self.offers += list(_offers(self.manager, plugin, source))
+        except BaseException as error:
+            if self.manager.is_registered(plugin):
+                self.manager.unregister(plugin)
+            if isinstance(error, pluggy.PluginValidationError | ValueError):
+                raise PluginError(str(error)) from error
+            raise
+
+    def without(self, distributions: Iterable[str]) -> Plugins:
+        """Return the same plugins but those of the named *distributions*."""
+        blocked = {normalized(distribution) for distribution in distributions}
+        if not blocked:
+            return self
+        kept = Plugins(skipped=self.skipped)
+        for name, plugin in self.manager.list_name_plugin():
+            distribution, entry_point = name.rsplit(":", 1)
+            if plugin is not None and normalized(distribution) not in blocked:
+                kept.manager.register(plugin, name=f"{distribution}:{entry_point}")
+        kept.offers = [o for o in self.offers if normalized(o.source.distribution) not in blocked]
+        return kept
+
+    def require(self, distributions: Iterable[str]) -> None:
+        """Make sure that each of *distributions* offers something here.
+
+        Raises:
+            PluginError: One is missing or was skipped; says why.
+        """
+        names = {name.rsplit(":", 1)[0] for name, _ in self.manager.list_name_plugin()}
+        usable = {normalized(name) for name in names}
+        for distribution in distributions:
+            wanted = normalized(distribution)
+            causes = [s.cause for s in self.skipped if normalized(s.source.distribution) == wanted]
+            if causes:
+                raise PluginError(f"required plugin '{distribution}' cannot be used: {causes[0]}")
+            if wanted not in usable:
+                found = ", ".join(sorted(names))
+                raise PluginError(f"required plugin '{distribution}' is not installed; found: {found}")
+
+    def names(self, kind: str) -> list[str]:
+        """Return the sorted names of the components of a *kind*."""
+        return sorted({offer.name for offer in self.offers if offer.kind == kind})
+
+    def find(self, kind: str, asked: str) -> Offer:
+        """Return the component *asked* for, as ``name`` or ``distribution:name``.
+
+        Raises:
+            ConfigurationError: There is none of that name, or several; says what there is.
+        """
+        distribution, _, name = asked.rpartition(":")
+        found = [
+            offer
+            for offer in self.offers
+            if offer.kind == kind
+            and offer.name == name
+            and normalized(distribution) in ("", normalized(offer.source.distribution))
+        ]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            choices = " or ".join(f"'{offer.source.distribution}:{name}'" for offer in found)
+            raise ConfigurationError(f"{kind} '{asked}' is offered by several plugins; write {choices}")
+        raise ConfigurationError(self._unknown(kind, asked))
+
+    def _unknown(self, kind: str, asked: str) -> str:
+        message = f"unknown {kind} '{asked}'{suggestion(asked, self.names(kind), 'installed')}"
+        if self.skipped:
+            causes = "; ".join(f"{skipped.source}: {skipped.cause}" for skipped in self.skipped)
+            message += f" (skipped plugins: {causes})"
+        return message
+
+
+def normalized(distribution: str) -> str:
+    """Return a distribution's name as packaging compares it (PEP 503)."""
+    return re.sub(r"[-_.]+", "-", distribution).lower()
+
+
+def _check_hooks(manager: pluggy.PluginManager, plugin: object) -> None:
+    known = [name for name in dir(hookspecs) if name.startswith("evoframe_")]
+    callers = manager.get_hookcallers(plugin)
+    if not callers:
+        raise PluginError("it implements no hook; are its functions marked with evoframe.hookimpl?")
+    for caller in callers:
+        if not caller.has_spec():
+            raise PluginError(f"unknown hook '{caller.name}'{suggestion(caller.name, known)}")
+
+
+def _offers(manager: pluggy.PluginManager, plugin: object, source: Source) -> Iterator[Offer]:
+    for kind, form in KINDS.items():
+        for implementation in getattr(manager.hook, form.hook).get_hookimpls():
+            if implementation.plugin is plugin:
+                yield from _checked(kind, form.hook, implementation.function(), source)
+
+
+def _checked(kind: str, hook: str, offered: Any, source: Source) -> Iterator[Offer]:
+    """Yield what a hook returned, if it is what a hook must return."""
+    if not isinstance(offered, Mapping):
+        raise PluginError(f"{hook} must return a mapping of names to classes, not {offered!r}")
+    for name, component in offered.items():
+        if not (isinstance(name, str) and _COMPONENT_NAME.fullmatch(name)):
+            raise PluginError(f"{hook} offers the name {name!r}; use lower-case letters, digits, - and _")
+        if not (isinstance(component, type) and attrs.has(component)):
+            raise PluginError(f"{hook} offers '{name}': {component!r}, which is no attrs class")
+        yield Offer(kind, name, component, source)

@@ -1,0 +1,1 @@
+"""Robustness: the same random controllers for every body."""

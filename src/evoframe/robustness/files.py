@@ -1,0 +1,253 @@
+"""The directory of a measurement of robustness: its scores and its setting, exact, to be read again."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+from evoframe.config.layers import as_read
+from evoframe.errors import InputError
+from evoframe.files.reading import is_file, read_text
+from evoframe.record.champion import parsed_json
+from evoframe.record.provenance import differences
+from evoframe.record.store import write_atomically
+from evoframe.robustness.measurement import Body, Divergence, Robustness, Setting
+
+__all__ = [
+    "SCORES_FILE",
+    "SETTING_FILE",
+    "document_of",
+    "read_robustness",
+    "refuse_another",
+    "scores_text",
+    "write_measurement",
+]
+
+SETTING_FILE = "robustness.json"
+"""What was measured, and which simulations diverged."""
+
+SCORES_FILE = "scores.csv"
+"""A line for each controller, a column for each body; empty where a simulation diverged."""
+
+_FORMAT = 1
+_LARGEST = 256  # MiB
+_FIRST = "controller"  # heading of the first column
+
+
+def write_measurement(measured: Robustness, directory: Path) -> list[Path]:
+    """Write all scores, and what they are of.
+
+    Args:
+        measured: The measurement.
+        directory: Where to; it is there, and files of an earlier measurement are replaced.
+
+    Returns:
+        What was written.
+
+    Raises:
+        RunError: It cannot be written.
+    """
+    texts = {
+        SCORES_FILE: scores_text(measured),
+        SETTING_FILE: f"{json.dumps(document_of(measured), indent=1)}\n",
+    }
+    for name, text in texts.items():
+        write_atomically(directory / name, text.encode())
+    return [directory / name for name in texts]
+
+
+def document_of(measured: Robustness) -> dict[str, Any]:
+    """Return what was measured, and which simulations diverged, as JSON values."""
+    setting = measured.setting
+    lost = [
+        {"controller": each.controller, "body": setting.bodies[each.body].label, "step": each.step}
+        for each in measured.diverged
+    ]
+    digest = hashlib.sha256(scores_text(measured).encode()).hexdigest()
+    return {"format": _FORMAT, **_tables(setting), "diverged": lost, "scores_sha256": digest}
+
+
+def refuse_another(directory: Path, setting: Setting, *, force: bool = False) -> None:
+    """Make sure that a directory is missing or empty, or has a measurement of the same setting.
+
+    Args:
+        directory: Where a measurement shall be written.
+        setting: What it will be of.
+        force: Whether a measurement of another setting, or a damaged one, may be replaced.
+
+    Raises:
+        InputError: It has something else; says what differs.
+    """
+    path = directory / SETTING_FILE
+    try:
+        occupied = directory.exists() and any(directory.iterdir())
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a measurement: {error.strerror}") from error
+    if not occupied:
+        return
+    if not is_file(path):
+        raise InputError(f"{directory}: is not empty, and not the directory of a measurement; choose another")
+    if force:
+        return
+    there = _document(path).setting
+    alike = [body.label for body in there.bodies] == [body.label for body in setting.bodies]
+    lines = differences(_compared(there, labelled=alike), _compared(setting, labelled=alike))
+    if lines:
+        listed = "\n  ".join(lines)
+        raise InputError(f"{path}: was measured otherwise; use --out, or --force to replace it:\n  {listed}")
+
+
+def read_robustness(directory: str | Path) -> Robustness:
+    """Return the measurement that :func:`write_measurement` wrote.
+
+    Raises:
+        InputError: There is none, or it is damaged.
+    """
+    path = Path(directory) / SETTING_FILE
+    if not is_file(path):
+        raise InputError(f"{directory}: is no measurement of robustness: there is no {SETTING_FILE}")
+    found = _document(path)
+    path = Path(directory) / SCORES_FILE
+    text = read_text(path, _LARGEST)
+    try:
+        scores = _read_scores(text, found)
+    except (ValueError, csv.Error) as error:
+        raise InputError(f"{path}: not as evoframe writes it: {error}") from error
+    if hashlib.sha256(text.encode()).hexdigest() != found.digest:
+        raise InputError(f"{path}: is not the measurement that {SETTING_FILE} describes; measure again")
+    scores.setflags(write=False)
+    return Robustness(found.setting, scores, found.diverged)
+
+
+def _tables(setting: Setting) -> dict[str, Any]:
+    bodies = [attrs.asdict(body) for body in setting.bodies]
+    return {
+        "seed": setting.seed,
+        "controllers": setting.controllers,
+        "unit": setting.unit,
+        "simulation": as_read(setting.simulation),
+        "bodies": bodies,
+    }
+
+
+def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
+    """Return the setting as tables in which each body has a key of its own.
+
+    Bodies are compared by what they are: a run that was moved is the same under another name. *labelled* is
+    whether their labels may stand in what a person reads, for they are the same in both settings.
+    """
+    groups = list(setting.groups)
+    bodies = {
+        body.label if labelled else str(number): f"{body.digest[:16]} in group {groups.index(body.group) + 1}"
+        for number, body in enumerate(setting.bodies, start=1)
+    }
+    return {**_tables(setting), "bodies": bodies}
+
+
+@attrs.frozen
+class _Described:
+    """What stands in the file of a setting."""
+
+    setting: Setting
+    diverged: tuple[Divergence, ...]
+    digest: str
+
+
+def _document(path: Path) -> _Described:
+    try:
+        document = parsed_json(read_text(path, _LARGEST))
+        if not isinstance(document, Mapping) or "bodies" not in document:
+            raise ValueError("this JSON is no measurement of robustness")  # noqa: TRY301 - as all others
+        if document.get("format") is True or document.get("format") != _FORMAT:
+            found = document.get("format")
+            raise ValueError(f"format {found!r}, but this evoframe reads format {_FORMAT}")  # noqa: TRY301
+        return _described(document)
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _described(document: Mapping[str, Any]) -> _Described:
+    """Return what a document describes.
+
+    Raises:
+        ValueError: It is damaged.
+    """
+    try:
+        bodies = tuple(Body(**body) for body in document["bodies"])
+        given = {key: document[key] for key in ("seed", "controllers", "unit", "simulation")}
+        setting = Setting(**given, bodies=bodies)
+        columns = {body.label: column for column, body in enumerate(bodies)}
+        lost = [Divergence(d["controller"], columns[d["body"]], d["step"]) for d in document["diverged"]]
+        kept = {key: document[key] for key in ("diverged", "scores_sha256")}
+        same = _text(document) == _text({"format": _FORMAT, **_tables(setting), **kept})
+        digest = document["scores_sha256"]
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"not as evoframe writes it: {type(error).__name__}: {error}") from error
+    if not same or not _sound(setting, lost):
+        raise ValueError("not as evoframe writes it: a value is of the wrong kind")
+    return _Described(setting, tuple(lost), digest)
+
+
+def _text(document: Any) -> str:
+    return json.dumps(document, sort_keys=True)
+
+
+def _sound(setting: Setting, lost: list[Divergence]) -> bool:
+    """Return whether values are of the kind that they must be."""
+    texts = [setting.unit, *(text for body in setting.bodies for text in attrs.astuple(body))]
+    numbers = [
+        setting.seed,
+        setting.controllers,
+        *(each.controller for each in lost),
+        *(e.step for e in lost),
+    ]
+    labels = {body.label for body in setting.bodies}
+    return (
+        all(isinstance(text, str) for text in texts)
+        and all(type(number) is int and number >= 0 for number in numbers)
+        and isinstance(setting.simulation, Mapping)
+        and 0 < len(labels) == len(setting.bodies)
+    )
+
+
+def scores_text(measured: Robustness) -> str:
+    """Return the table of all scores as CSV, exact to the last bit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([_FIRST, *(body.label for body in measured.setting.bodies)])
+    for number, row in enumerate(measured.scores.tolist()):
+        writer.writerow([number, *("" if math.isnan(score) else repr(score) for score in row)])
+    return text.getvalue()
+
+
+def _read_scores(text: str, found: _Described) -> np.ndarray[Any, np.dtype[np.float64]]:
+    setting = found.setting
+    header, *rows = [*csv.reader(io.StringIO(text))] or [[]]
+    if header != [_FIRST, *(body.label for body in setting.bodies)]:
+        raise ValueError(f"its columns are not the bodies of {SETTING_FILE}")
+    numbers = [row[0] if row else "" for row in rows]
+    if len(rows) != setting.controllers or numbers != [str(number) for number in range(len(rows))]:
+        raise ValueError(f"expected a line for each of {setting.controllers} controllers")
+    scores = np.array([[*_numbers(row, len(setting.bodies))] for row in rows])
+    empty = {(int(row), int(column)) for row, column in np.argwhere(np.isnan(scores))}
+    if empty != {(each.controller, each.body) for each in found.diverged}:
+        raise ValueError(f"scores are missing elsewhere than {SETTING_FILE} says")
+    return scores
+
+
+def _numbers(row: list[str], bodies: int) -> Iterator[float]:
+    if len(row) != bodies + 1:
+        raise ValueError(f"line of controller {row[0]}: expected {bodies} scores, found {len(row) - 1}")
+    for cell in row[1:]:
+        if cell and not math.isfinite(float(cell)):
+            raise ValueError(f"line of controller {row[0]}: {cell} is no score")
+        yield float(cell) if cell else math.nan

@@ -1,0 +1,1 @@
+"""Worker processes, and the number of cores they may use."""

@@ -1,0 +1,37 @@
+"""Names are broken into lines that fit, and nothing is lost but the middle of endless ones."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evoframe.analysis.figures.printed import broken, text_width
+
+ASCII = st.text(st.characters(min_codepoint=32, max_codepoint=126))
+
+
+@given(ASCII)
+def test_no_line_is_too_wide(name: str) -> None:
+    assert text_width(broken(name, 1.0, 7), 7) <= 1.0
+
+
+@given(ASCII.filter(lambda name: len(name) < 30))
+def test_nothing_is_lost(name: str) -> None:
+    assert broken(name, 1.0, 7).split() == broken(broken(name, 1.0, 7), 1.0, 7).split()
+    assert "".join(broken(name, 1.0, 7).split()) == "".join(name.split())
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [
+        ("", [""]),
+        ("AM", ["AM"]),
+        ("best-and-worst (n = 10, aggregator = WM)", ["best-and-worst", "(n = 10,", "aggregator = WM)"]),
+        ("/home/somebody/runs/a", ["/home/somebody/", "runs/a"]),
+        ("several_underscores_here", ["several_", "underscores_here"]),
+        ("x" * 1000, ["x" * 17, "x" * 17, "x" * 17, "...", "x" * 17, "x" * 14]),
+    ],
+)
+def test_lines_end_where_words_do(name: str, lines: list[str]) -> None:
+    assert broken(name, 1.0, 7).split("\n") == lines

@@ -1,0 +1,174 @@
+"""What a person names to have it simulated: which designs it stands for, and with which settings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import toys
+
+from evoframe import ConfigurationError, InputError, Run, RunConfig, discover, run
+from evoframe.designs.sources import read_job
+from evoframe.registry.registry import Plugins
+
+Load = Callable[..., RunConfig]
+
+WITH_SETTINGS = "designs = [{ a = 2.0, b = 3.0 }, { a = 1.0 }]\n[settings]\ngain = 2.0\nlimit = 100.0\n"
+WITHOUT = "designs = [{ a = 2.0, b = 3.0 }]\n"
+
+
+@pytest.fixture(scope="module")
+def plugins() -> Plugins:
+    """The built-in plugins and the toys."""
+    return discover([toys.__file__])
+
+
+@pytest.fixture
+def varied(tmp_path: Path) -> str:
+    """A preset whose simulator has all that it may offer."""
+    path = tmp_path / "varied.toml"
+    simulator = 'name = "toy-varied"\ngain = 7.0'
+    path.write_text(toys.CONFIGURATION.replace('name = "toy-product"', simulator))
+    return str(path)
+
+
+@pytest.fixture
+def toy_path(tmp_path: Path) -> Callable[[str], Path]:
+    def write(text: str) -> Path:
+        path = tmp_path / "two.toy"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+Written = Callable[[str], Path]
+
+
+def gain_of(config: RunConfig) -> Any:
+    return config.tables()["simulator"].get("gain")
+
+
+class TestFile:
+    def test_brings_designs_with_labels(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
+        job = read_job(toy_path(WITH_SETTINGS), varied, [], plugins)
+        assert job.labels == ("two.toy[0]", "two.toy[1]")
+        assert [sorted(design.roles) for design in job.designs] == [["a", "b"], ["a"]]
+        assert (job.run, job.score) == (None, None)
+
+    def test_brings_settings_that_replace_those_of_the_preset(
+        self, plugins: Plugins, varied: str, toy_path: Written
+    ) -> None:
+        assert gain_of(read_job(toy_path(WITH_SETTINGS), varied, [], plugins).config) == 2.0
+        assert gain_of(read_job(toy_path(WITHOUT), varied, [], plugins).config) == 7.0
+
+    def test_yields_to_what_is_set(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
+        job = read_job(toy_path(WITH_SETTINGS), varied, ["simulator.gain=5"], plugins)
+        assert job.config.tables()["simulator"] == {"name": "toy-varied", "limit": 100.0, "gain": 5.0}
+
+    def test_is_asked_of_the_simulator_that_is_set(
+        self, plugins: Plugins, tmp_path: Path, toy_path: Written
+    ) -> None:
+        path = tmp_path / "plain.toml"
+        path.write_text(toys.CONFIGURATION)
+        job = read_job(toy_path(WITH_SETTINGS), str(path), ["simulator=toy-varied"], plugins)
+        assert gain_of(job.config) == 2.0
+
+    def test_with_what_is_only_valid_together_with_its_settings_is_read(
+        self, plugins: Plugins, tmp_path: Path, toy_path: Written
+    ) -> None:
+        path = tmp_path / "narrow.toml"
+        fitting = 'name = "toy-fitting"\nlimit = 1.0'
+        path.write_text(toys.CONFIGURATION.replace('name = "toy-product"', fitting))
+        job = read_job(toy_path(WITH_SETTINGS), str(path), ["simulator.gain=50"], plugins)
+        assert job.config.tables()["simulator"] == {"name": "toy-fitting", "limit": 100.0, "gain": 50.0}
+
+    def test_with_a_fault_in_its_settings_is_named(
+        self, plugins: Plugins, varied: str, toy_path: Written
+    ) -> None:
+        path = toy_path(WITH_SETTINGS.replace("gain = 2.0", "gain = -1.0\nspeed = 3"))
+        with pytest.raises(ConfigurationError) as caught:
+            read_job(path, varied, [], plugins)
+        assert f"{path}: simulator.gain: must be >= 0, found -1.0" in str(caught.value)
+        assert f"{path}: simulator.speed: unknown option" in str(caught.value)
+
+    def test_whose_settings_cannot_deliver_the_record_says_so(
+        self, plugins: Plugins, varied: str, toy_path: Written
+    ) -> None:
+        path = toy_path(WITH_SETTINGS)
+        with pytest.raises(ConfigurationError, match=r"objective: toy-product ends at 1\.0 s, before 3\.0 s"):
+            read_job(path, varied, ['objective={name="toy-late", until=3.0}'], plugins)
+
+    def test_reports_all_faults_of_what_is_set(
+        self, plugins: Plugins, varied: str, toy_path: Written
+    ) -> None:
+        with pytest.raises(ConfigurationError, match=r"2 faults(.|\n)*run\.seed(.|\n)*simulator: unknown"):
+            read_job(toy_path(WITHOUT), varied, ["simulator=nothing", "run.seed=-1"], plugins)
+
+    def test_of_a_simulator_that_reads_none_is_refused(
+        self, plugins: Plugins, varied: str, toy_path: Written
+    ) -> None:
+        with pytest.raises(ConfigurationError, match="the simulator 'toy-product' reads no files"):
+            read_job(toy_path(WITHOUT), varied, ["simulator=toy-product"], plugins)
+
+
+class TestRun:
+    @pytest.fixture
+    def finished(self, plugins: Plugins, varied: str, tmp_path: Path) -> Run:
+        return run(varied, out=tmp_path / "run", plugins=plugins)
+
+    def test_stands_for_its_champion_as_it_was_simulated(self, plugins: Plugins, finished: Run) -> None:
+        job = read_job(finished.directory, None, [], plugins, runs=True)
+        assert job.run == finished
+        assert job.score == finished.champion.score
+        assert job.labels == (str(finished.directory),)
+        assert job.config.simulation() == finished.champion.simulation
+        assert job.config.executor.name == "toy-here"
+
+    @pytest.mark.parametrize(
+        ("overrides", "same"),
+        [
+            (["executor=serial", "run.seed=4"], True),
+            (["simulator.gain=7"], True),
+            (["simulator.gain=8"], False),
+            (["objective=toy-late"], False),
+        ],
+    )
+    def test_has_its_score_only_as_long_as_simulation_and_objective_are_the_same(
+        self, plugins: Plugins, finished: Run, overrides: list[str], same: bool
+    ) -> None:
+        expected = finished.champion.score if same else None
+        for path in (finished.directory, finished.directory / "champion.json"):
+            assert read_job(path, None, overrides, plugins, runs=True).score == expected
+
+    def test_is_simulated_as_a_preset_does_on_demand(
+        self, plugins: Plugins, finished: Run, varied: str, toy_file: Path
+    ) -> None:
+        for path in (finished.directory, finished.directory / "champion.json"):
+            job = read_job(path, str(toy_file), [], plugins, runs=True)
+            assert job.config.simulator.name == "toy-product"
+            assert job.score is None
+
+    def test_is_no_file(self, plugins: Plugins, finished: Run, varied: str) -> None:
+        with pytest.raises(InputError, match="cannot be read: Is a directory"):
+            read_job(finished.directory, varied, [], plugins)
+
+    @pytest.mark.parametrize("name", ["nowhere", "nowhere.json", "no\0where", "n" * 5000])
+    def test_that_is_not_there_is_said(self, plugins: Plugins, tmp_path: Path, name: str) -> None:
+        with pytest.raises(InputError, match=r"(where|nnn).*: cannot be read: "):
+            read_job(tmp_path / name, None, [], plugins, runs=True)
+
+    def test_that_is_another_directory_is_refused(self, plugins: Plugins, tmp_path: Path) -> None:
+        with pytest.raises(InputError, match="is no run's directory"):
+            read_job(tmp_path, None, [], plugins, runs=True)
+
+    def test_whose_champion_has_not_all_roles_is_refused(self, plugins: Plugins, finished: Run) -> None:
+        path = finished.directory / "champion.json"
+        document = json.loads(path.read_text())
+        document["simulation"] = {"simulator": {"name": "toy-demanding"}, "objective": {"name": "toy-value"}}
+        path.write_text(json.dumps(document))
+        with pytest.raises(InputError, match=r"champion\.json: design: has no morphology"):
+            read_job(path, None, [], plugins)

@@ -1,0 +1,385 @@
+"""The loop, with toys for everything else."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import statistics
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numpy as np
+import pytest
+import toys
+from hypothesis import given
+from hypothesis import strategies as st
+from loops import continued, history, stopped
+
+from evoframe import Design, PopulationReport, Record, RunConfig, RunError, Turn, assemble
+from evoframe.evolution.population import Population
+
+Load = Callable[..., RunConfig]
+T = TypeVar("T")
+
+
+def known(value: T | None) -> T:
+    assert value is not None
+    return value
+
+
+def assert_fitness_is_the_mean(turn: Turn, report: PopulationReport, column: int, rel: float) -> None:
+    for member in report.members:
+        scores = [known(pair.score) for pair in turn.pairs if pair.genomes[column] == member.id]
+        assert member.fitness == pytest.approx(statistics.fmean(scores), rel=rel)
+
+
+def test_first_everyone_meets_everyone_and_gets_the_arithmetic_mean(toy_config: Load) -> None:
+    turn = next(iter(assemble(toy_config())))
+    assert turn.index == 0
+    assert len(turn.pairs) == 6 * 5
+    for position, report in enumerate(turn.reports):
+        for member in report.members:
+            assert sum(pair.genomes[position] == member.id for pair in turn.pairs) == (5, 6)[position]
+        assert_fitness_is_the_mean(turn, report, position, rel=1e-14)
+
+
+def test_designs_that_share_their_first_member_are_simulated_side_by_side(toy_config: Load) -> None:
+    asked: list[float] = []
+
+    class Noting(toys.Product):
+        def key(self, design: Design, record: Record) -> bytes:
+            asked.append(float(design.roles["a"][0]))
+            return super().key(design, record)
+
+    coevolution = assemble(toy_config())
+    coevolution.evaluator.simulator = Noting()
+    for turn in coevolution:
+        assert len([a for a, _ in itertools.groupby(asked)]) == len({pair.genomes[0] for pair in turn.pairs})
+        asked.clear()
+
+
+def test_then_populations_take_turns_in_order(toy_config: Load) -> None:
+    turns = list(assemble(toy_config()))
+    assert [turn.index for turn in turns] == list(range(9))
+    assert [turn.reports[0].population for turn in turns[1:]] == ["a", "b"] * 4
+    assert [turn.reports[0].generation for turn in turns[1:]] == [1, 1, 2, 2, 3, 3, 4, 4]
+
+
+def test_all_members_meet_the_fittest_of_the_other_population(toy_config: Load) -> None:
+    turns = list(assemble(toy_config()))
+    others = {report.population: report for report in turns[0].reports}
+    for turn in turns[1:]:
+        [report] = turn.reports
+        other = others["b" if report.population == "a" else "a"]
+        fittest = sorted(other.members, key=lambda member: -known(member.fitness))[:2]
+        column = "ab".index(report.population)
+        met = {pair.genomes[1 - column] for pair in turn.pairs}
+        assert met == {member.id for member in fittest}
+        assert len(turn.pairs) == 2 * len(report.members)
+        others[report.population] = report
+
+
+def test_the_other_population_keeps_its_fitness(toy_config: Load) -> None:
+    coevolution = assemble(toy_config())
+    turns = iter(coevolution)
+    next(turns)
+    before = coevolution.populations[1].members
+    next(turns)
+    assert coevolution.populations[1].members == before
+
+
+def test_fitness_is_the_aggregate_of_the_scores_of_its_pairs(toy_config: Load) -> None:
+    for turn in list(assemble(toy_config()))[1:]:
+        [report] = turn.reports
+        assert_fitness_is_the_mean(turn, report, "ab".index(report.population), rel=1e-14)
+
+
+def test_the_best_pair_is_the_earliest_of_the_best_that_were_simulated(toy_config: Load) -> None:
+    best, found = -math.inf, None
+    for turn in assemble(toy_config()):
+        top = max(known(pair.score) for pair in turn.pairs)
+        if top > best:
+            best, found = top, turn
+            assert turn.best_pair is not None
+            assert (turn.best_pair.score, turn.best_pair.turn) == (top, turn.index)
+            first = next(pair for pair in turn.pairs if pair.score == top)
+            assert tuple(turn.best_pair.genome_ids.values()) == first.genomes
+            product = np.prod([array[0] for array in turn.best_pair.design.roles.values()])
+            assert product == top
+        else:
+            assert turn.best_pair is None
+    assert found is not None
+
+
+def test_best_so_far_never_falls(toy_config: Load) -> None:
+    for name in "ab":
+        reports = [
+            r
+            for turn in assemble(toy_config("run.generations=30"))
+            for r in turn.reports
+            if r.population == name
+        ]
+        assert [r.best_so_far for r in reports] == list(np.maximum.accumulate([r.best for r in reports]))
+
+
+def test_equal_pairs_are_simulated_once(toy_config: Load) -> None:
+    coevolution = assemble(toy_config())
+    seen = set()
+    for turn in coevolution:
+        seen |= {pair.genomes for pair in turn.pairs}
+    assert coevolution.evaluator.simulations == len(seen)
+
+
+def test_the_same_seed_gives_the_same_history_and_another_seed_another(toy_config: Load) -> None:
+    once, again = history(assemble(toy_config())), history(assemble(toy_config()))
+    assert once == again
+    assert history(assemble(toy_config("run.seed=4"))) != once
+
+
+def test_two_loops_interleaved_equal_each_alone(toy_config: Load) -> None:
+    first, second = assemble(toy_config()), assemble(toy_config("run.seed=9"))
+    turns = [list(pair) for pair in zip(first, second, strict=True)]
+    assert history([a for a, _ in turns]) == history(assemble(toy_config()))
+    assert history([b for _, b in turns]) == history(assemble(toy_config("run.seed=9")))
+
+
+@pytest.mark.parametrize("at", range(9))
+def test_a_restored_loop_continues_bit_for_bit(toy_config: Load, at: int) -> None:
+    whole = history(assemble(toy_config()))
+    second = continued(toy_config(), stopped(toy_config(), at))
+    assert history(second) == whole[at + 1 :]
+    assert second.best_score == max(pair[2][i].score for pair in whole for i in range(len(pair[2])))
+
+
+class TestMoreThanTwoPopulations:
+    @pytest.fixture
+    def turns(self, toy_config: Load) -> list[Turn]:
+        third = ('populations.c.encoder={name="toy-number", role="c"}', "populations.c.evolver=toy-drift")
+        return list(assemble(toy_config(*third, "populations.c.size=4")))
+
+    def test_take_turns_in_order(self, turns: list[Turn]) -> None:
+        assert [turn.reports[0].population for turn in turns[1:13]] == ["a", "b", "c"] * 4
+
+    def test_are_combined_position_by_position(self, turns: list[Turn]) -> None:
+        for turn in turns[1:13]:
+            column = "abc".index(turn.reports[0].population)
+            teams = {pair.genomes[:column] + pair.genomes[column + 1 :] for pair in turn.pairs}
+            assert len(teams) == 2  # not 2 x 2: the i-th collaborator of one with the i-th of the other
+
+    def test_first_everyone_meets_every_member_of_every_other_one(self, turns: list[Turn]) -> None:
+        sizes = (6, 5, 4)
+        for one, size in enumerate(sizes):
+            for other, partners in enumerate(sizes):
+                met = {(pair.genomes[one], pair.genomes[other]) for pair in turns[0].pairs}
+                assert one == other or len(met) == size * partners
+
+    def test_fitness_follows_from_the_scores_of_all_pairs_of_a_turn(self, turns: list[Turn]) -> None:
+        for turn in turns:
+            for report in turn.reports:
+                assert_fitness_is_the_mean(turn, report, "abc".index(report.population), rel=1e-12)
+
+
+class TestClosingMeeting:
+    def test_lets_the_fittest_meet_who_have_not(self, toy_config: Load) -> None:
+        coevolution = assemble(toy_config("collaboration={name='toy-last'}"))
+        turns = list(coevolution)
+        closing = turns[-1]
+        assert (closing.index, closing.reports) == (9, ())
+        fittest = tuple(p.members[p.fittest()].id for p in coevolution.populations)
+        assert [pair.genomes for pair in closing.pairs] == [fittest]
+        assert coevolution.finished
+        assert coevolution.fittest_pair() == closing.pairs[0]
+
+    def test_is_one_of_the_pairs_among_which_the_best_is(self, toy_config: Load) -> None:
+        better = 0
+        for seed in range(20):
+            coevolution = assemble(toy_config("collaboration={name='toy-last'}", f"run.seed={seed}"))
+            turns = list(coevolution)
+            assert coevolution.best_score == max(known(pair.score) for turn in turns for pair in turn.pairs)
+            better += turns[-1].best_pair is not None
+        assert better > 0
+
+    def test_does_not_take_place_when_they_have_met(self, toy_config: Load) -> None:
+        coevolution = assemble(toy_config())
+        assert len(list(coevolution)) == coevolution.length + 1
+        assert coevolution.finished
+
+    def test_takes_place_once_after_a_restart_too(self, toy_config: Load) -> None:
+        config = toy_config("collaboration={name='toy-last'}")
+        whole = history(assemble(config))
+        second = continued(config, stopped(config, assemble(config).length))
+        assert not second.finished
+        assert history(second) == whole[-1:]
+        assert history(continued(config, second)) == []
+
+
+class TestRandomStreams:
+    def genomes(self, config: RunConfig) -> dict[str, Any]:
+        coevolution = assemble(config)
+        next(iter(coevolution))
+        return {population.name: list(population.genomes) for population in coevolution.populations}
+
+    def test_each_population_has_its_own(self, toy_config: Load) -> None:
+        genomes = self.genomes(toy_config("populations.a.size=5"))
+        assert genomes["a"] != genomes["b"]
+
+    def test_they_belong_to_names_so_another_population_changes_none(self, toy_config: Load) -> None:
+        two = self.genomes(toy_config())
+        third = ('populations.c.encoder={name="toy-number", role="c"}', "populations.c.evolver=toy-drift")
+        three = self.genomes(toy_config(*third))
+        assert {name: three[name] for name in two} == two
+        assert three["c"][:5] not in (two["a"][:5], two["b"])
+
+    def test_collaborators_are_drawn_from_the_stream_of_the_population_that_they_judge(
+        self, toy_config: Load
+    ) -> None:
+        coevolution = assemble(toy_config("collaboration={name='toy-drawn'}"))
+        turns = iter(coevolution)
+        next(turns)
+        states = [population.rng.bit_generator.state for population in coevolution.populations]
+        assert states[0] != states[1]
+        next(turns)
+        assert coevolution.populations[0].rng.bit_generator.state != states[0]
+        assert coevolution.populations[1].rng.bit_generator.state == states[1]
+
+
+class TestBadComponents:
+    """Those of other people; that they are the core's own is another matter."""
+
+    @pytest.mark.parametrize("chosen", [[0, 0], [0, 99], [-1, 0], [0.0, 1.0], [0, 1, 2], 0])
+    def test_a_strategy_that_chooses_what_is_not_there_is_named(
+        self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, chosen: list[Any]
+    ) -> None:
+        monkeypatch.setattr(toys.First, "select", lambda self, members, rng: chosen)
+        with pytest.raises(RunError, match=r"collaboration: chose .*, not 2 of the 5 members of 'b'"):
+            list(assemble(toy_config()))
+
+    @pytest.mark.parametrize("fitness", ["abc", None, float("nan"), float("inf")])
+    def test_an_aggregator_that_gives_no_number_is_named(
+        self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, fitness: Any
+    ) -> None:
+        monkeypatch.setattr(toys.Mean, "aggregate", lambda self, scores: fitness)
+        with pytest.raises(RunError, match="aggregator: gave the fitness"):
+            list(assemble(toy_config()))
+
+    def test_a_simulator_that_loses_an_outcome_is_named(
+        self, toy_config: Load, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(toys.Product, "simulate", lambda self, designs, record: [])
+        with pytest.raises(RunError, match="simulator: returned 0 outcomes for"):
+            list(assemble(toy_config()))
+
+
+class TestDivergence:
+    def test_a_diverged_individual_gets_the_lowest_clean_fitness_and_a_mark(self, toy_config: Load) -> None:
+        marked = 0
+        for turn in assemble(toy_config("simulator.limit=0.15", "run.generations=20")):
+            for report in turn.reports:
+                column = "ab".index(report.population)
+                clean = [known(member.fitness) for member in report.members if not member.diverged]
+                for member in report.members:
+                    scores = [pair.score for pair in turn.pairs if pair.genomes[column] == member.id]
+                    assert member.diverged == (None in scores)
+                    if member.diverged and clean:
+                        marked += 1
+                        assert member.fitness == min(clean)
+        assert marked > 0
+
+    def test_a_diverged_pair_has_a_step_and_no_score(self, toy_config: Load) -> None:
+        pairs = [pair for turn in assemble(toy_config("simulator.limit=0.15")) for pair in turn.pairs]
+        assert any(pair.score is None for pair in pairs)
+        assert all((pair.score is None) == (pair.diverged_at == 1) for pair in pairs)
+
+    def test_a_diverged_one_is_neither_collaborator_nor_champion_while_a_clean_one_exists(
+        self, toy_config: Load
+    ) -> None:
+        coevolution = assemble(toy_config("simulator.limit=0.15", "run.generations=20"))
+        others: dict[str, Any] = {}
+        chosen = 0
+        for turn in coevolution:
+            if turn.index > 0 and turn.reports:
+                [report] = turn.reports
+                column = "ab".index(report.population)
+                clean = [m.id for m in others["ba"[column]].members if not m.diverged]
+                met = {pair.genomes[1 - column] for pair in turn.pairs}
+                assert met <= set(clean) or len(clean) < 2
+                chosen += 1
+            others |= {report.population: report for report in turn.reports}
+            for population in coevolution.populations:
+                if any(not member.diverged for member in population.members):
+                    assert not population.members[population.fittest()].diverged
+        assert chosen == 40
+
+    def test_a_run_of_which_nothing_is_clean_says_so(self, toy_config: Load) -> None:
+        with pytest.raises(RunError, match="every simulation of the initial meeting diverged"):
+            next(iter(assemble(toy_config("simulator.limit=0"))))
+
+
+def unjudged() -> Population:
+    rng = np.random.default_rng(0)
+    return Population("a", toys.Number(), toys.DriftRun(step=0.1, size=0, rng=rng), rng)
+
+
+def judged(
+    population: Population, ids: list[int], fitness: list[float | None], floor: float | None = None
+) -> PopulationReport:
+    """Replace the members by those with the *ids*, and judge them."""
+    evolver = population.evolver
+    assert isinstance(evolver, toys.DriftRun)
+    evolver.ids, evolver.size = ids, len(ids)
+    population.judge(fitness, floor)
+    return population.report()
+
+
+@pytest.fixture
+def population() -> Population:
+    return unjudged()
+
+
+class TestChampion:
+    def test_falls_when_it_meets_new_collaborators(self, population: Population) -> None:
+        assert judged(population, [1, 2], [5.0, 1.0]).standing_champion == 5.0
+        assert judged(population, [1, 3], [2.0, 1.0]).standing_champion == 2.0
+
+    def test_is_replaced_by_who_beats_its_latest_fitness(self, population: Population) -> None:
+        judged(population, [1, 2], [5.0, 1.0])
+        report = judged(population, [1, 3], [2.0, 3.0])
+        assert (report.standing_champion, report.best, report.best_so_far) == (3.0, 3.0, 5.0)
+
+    def test_stands_still_when_it_has_left_the_population(self, population: Population) -> None:
+        judged(population, [1, 2], [5.0, 1.0])
+        assert judged(population, [3, 4], [2.0, 3.0]).standing_champion == 5.0
+
+    def test_a_diverged_champion_gives_way_to_a_clean_one(self, population: Population) -> None:
+        judged(population, [1, 2], [5.0, 1.0])
+        report = judged(population, [1, 2], [None, 0.5])
+        assert (report.standing_champion, report.members[0].fitness) == (0.5, 0.5)
+
+    def test_without_a_clean_one_the_lowest_that_the_population_has_had_counts(
+        self, population: Population
+    ) -> None:
+        judged(population, [1, 2], [5.0, -1.0])
+        judged(population, [1, 2], [3.0, 2.0])
+        report = judged(population, [1, 2], [None, None])
+        assert [member.fitness for member in report.members] == [-1.0, -1.0]
+
+    def test_before_there_was_one_the_lowest_score_of_the_turn_counts(self, population: Population) -> None:
+        report = judged(population, [1, 2], [None, None], floor=0.25)
+        assert [member.fitness for member in report.members] == [0.25, 0.25]
+
+    def test_nobody_is_the_fittest_before_anybody_was_judged(self, population: Population) -> None:
+        with pytest.raises(RunError, match="population 'a' has no members before the first turn"):
+            population.fittest()
+
+
+@given(st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=20))
+def test_the_fittest_is_the_first_of_the_best(fitness: list[float]) -> None:
+    population = unjudged()
+    judged(population, list(range(len(fitness))), list(fitness))
+    assert population.fittest() == fitness.index(max(fitness))
+
+
+def test_iterating_again_after_the_end_gives_nothing(toy_config: Load) -> None:
+    coevolution = assemble(toy_config())
+    assert len(list(coevolution)) == 9
+    assert list(coevolution) == []

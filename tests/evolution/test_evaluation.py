@@ -1,0 +1,128 @@
+"""Scores, their cache, and the solver's own failures."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+import toys
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evoframe import Design, Outcome, Record, RunError
+from evoframe.evolution.evaluation import Evaluator
+from evoframe_executors import Threads
+
+
+def design(a: float, b: float) -> Design:
+    return Design({"a": np.array([a]), "b": np.array([b])})
+
+
+@attrs.define
+class Counting:
+    """Counts what it really simulates."""
+
+    simulated: list[Design] = attrs.field(factory=list)
+    lock: Any = attrs.field(factory=threading.Lock)
+
+    def key(self, given: Design, record: Record) -> bytes:
+        return toys.Product().key(given, record)
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        with self.lock:
+            self.simulated += designs
+        return toys.Product(limit=100).simulate(designs, record)
+
+
+@attrs.frozen
+class Nameless(toys.Value):
+    """Cannot say what it sees."""
+
+    def score(self, outcome: Outcome) -> float:
+        del outcome
+        return float("nan")
+
+
+def evaluator(simulator: Any, workers: int = 1) -> Evaluator:
+    return Evaluator(simulator, toys.Value(), Threads(workers=workers).start())
+
+
+pairs = st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), max_size=30)
+
+
+@given(pairs, st.sampled_from([1, 2, 5]))
+def test_every_design_gets_its_score_and_none_is_simulated_twice(
+    numbers: list[tuple[int, int]], workers: int
+) -> None:
+    counting = Counting()
+    scorer = evaluator(counting, workers)
+    for _ in range(2):
+        scores = scorer.evaluate((design(a, b) for a, b in numbers), len(numbers))
+        assert [score.value for score in scores] == [a * b for a, b in numbers]
+    assert scorer.simulations == len(counting.simulated) == len(set(numbers))
+    scorer.close()
+
+
+def test_designs_are_made_while_others_are_simulated() -> None:
+    begun = threading.Event()
+
+    class Telling(Counting):
+        def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+            begun.set()
+            return super().simulate(designs, record)
+
+    def made() -> Iterator[Design]:
+        yield from (design(a, 1) for a in range(20))
+        assert begun.wait(timeout=10)
+        yield design(20, 1)
+
+    scorer = evaluator(Telling(), workers=2)
+    assert [score.value for score in scorer.evaluate(made(), 21)] == list(range(21))
+    scorer.close()
+
+
+@given(st.integers(0, 40), st.sampled_from([1, 2, 5]))
+def test_batches_keep_the_order_and_get_small_towards_the_end(count: int, workers: int) -> None:
+    batches = []
+
+    class Noting(Counting):
+        def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+            batches.append([float(given.roles["a"][0]) for given in designs])
+            return super().simulate(designs, record)
+
+    @attrs.define
+    class OneByOne(toys.Here):
+        workers: int = 1  # type: ignore[misc]
+
+    scorer = evaluator(Noting())
+    scorer.workers = OneByOne(workers)
+    scorer.evaluate((design(a, 1) for a in range(count)), count)
+    sizes = [len(batch) for batch in batches]
+    assert [a for batch in batches for a in batch] == list(range(count))
+    assert sizes == sorted(sizes, reverse=True)
+    assert max(sizes, default=1) <= 4
+    assert sizes[-1:] in ([], [1])
+
+
+def test_a_diverged_simulation_has_its_step_and_no_value() -> None:
+    [good, bad] = evaluator(Counting()).evaluate([design(1, 2), design(1, 1000)], 2)
+    assert (good.value, good.diverged_at) == (2.0, None)
+    assert (bad.value, bad.diverged_at) == (None, 1)
+
+
+def test_an_objective_that_gives_no_number_stops_the_run() -> None:
+    with pytest.raises(RunError, match="objective: gave the score nan"):
+        attrs.evolve(evaluator(Counting()), objective=Nameless()).evaluate([design(1, 1)], 1)
+
+
+def test_a_design_cannot_be_changed_behind_the_cache() -> None:
+    array = np.array([1.0])
+    given_design = Design({"a": array})
+    array[0] = 2.0
+    assert given_design.roles["a"][0] == 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        given_design.roles["a"][0] = 3.0

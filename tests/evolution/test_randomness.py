@@ -1,0 +1,16 @@
+"""Streams that belong to names."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evoframe.evolution.randomness import stream
+
+
+@given(st.integers(0, 2**64), st.text(), st.text())
+def test_streams_depend_on_seed_and_name_alone(seed: int, name: str, other: str) -> None:
+    first = stream(seed, name).random(3).tolist()
+    stream(seed, other).random(5)
+    assert stream(seed, name).random(3).tolist() == first
+    if name != other:
+        assert stream(seed, other).random(3).tolist() != first
+    assert stream(seed + 1, name).random(3).tolist() != first

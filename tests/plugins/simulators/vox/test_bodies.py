@@ -1,0 +1,339 @@
+"""Bodies from files: what is one is read, and whatever else there is in a file is refused by name."""
+
+from __future__ import annotations
+
+import bz2
+import io
+import math
+import warnings
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from evoframe import InputError
+from evoframe_simulators import Vox
+from evoframe_simulators.vox.bodies import read_bodies
+from evoframe_simulators.vox.materials import materials_of
+
+GOLDEN = Path(__file__).parents[3] / "data" / "paper_preset.npz"
+
+MATERIALS = materials_of(Vox())
+
+CELLS = (4, 2, 2)
+SOLID = np.ones(CELLS, np.uint8)
+ZERO = np.zeros(CELLS)
+
+
+def npy(array: Any, version: tuple[int, int] | None = None) -> bytes:
+    file = io.BytesIO()
+    with warnings.catch_warnings(action="ignore"):  # numpy would rather write version 1
+        np.lib.format.write_array(file, np.asarray(array), version)
+    return file.getvalue()
+
+
+def header(text: str, version: int = 1) -> bytes:
+    """Return an NPY file with this header and 16 bytes of data."""
+    length = len(text).to_bytes(2 if version == 1 else 4, "little")
+    return b"\x93NUMPY" + bytes([version, 0]) + length + text.encode() + bytes(16)
+
+
+def claiming(shape: str = "(4, 2, 2)", descr: str = "'|u1'") -> bytes:
+    return header(f"{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}}}\n")
+
+
+def zipped(
+    *members: tuple[str, bytes], method: int = zipfile.ZIP_STORED, change: Callable[[bytes], bytes] = bytes
+) -> bytes:
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", method) as archive, warnings.catch_warnings(action="ignore"):
+        for name, content in members:  # of a name that is there already, zipfile warns
+            archive.writestr(name, content)
+    return change(file.getvalue())
+
+
+def bodies(material: Any = SOLID, phase_cycles: Any = ZERO, **options: Any) -> bytes:
+    """Return an .npz file; a member is given as an array, or as its bytes."""
+    members = {"material.npy": material, "phase_cycles.npy": phase_cycles}
+    packed = ((name, given if isinstance(given, bytes) else npy(given)) for name, given in members.items())
+    return zipped(*packed, **options)
+
+
+def encrypted(content: bytes) -> bytes:
+    """Set the flag at every entry, in both of its places."""
+    changed = bytearray(content)
+    for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        at = content.find(signature)
+        while at >= 0:
+            changed[at + offset] |= 1
+            at = content.find(signature, at + 1)
+    return bytes(changed)
+
+
+def garbled(content: bytes) -> bytes:
+    """Overwrite the packed bytes of the first entry."""
+    start = 30 + len("material.npy")
+    return content[:start] + b"\xff" * 20 + content[start + 20 :]
+
+
+def renamed(before: bytes, after: bytes) -> Callable[[bytes], bytes]:
+    return lambda content: content.replace(before, after)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        pytest.param(b"", "is no .npz file with material and phase_cycles: ", id="nothing"),
+        pytest.param(b"\x89PNG\r\n" + bytes(100), "is no .npz file", id="a picture"),
+        pytest.param(npy(SOLID), "is no .npz file", id="an array alone"),
+        pytest.param(GOLDEN.read_bytes()[:5000], "is no .npz file", id="truncated"),
+        pytest.param(
+            zipped(("bodies.npy", npy(SOLID))),
+            "has no array 'material'; expected material and phase_cycles, found bodies",
+            id="other arrays",
+        ),
+        pytest.param(zipped(), "has no array 'material'; expected .*, found nothing$", id="no arrays"),
+        pytest.param(zipped(("material.npy", npy(SOLID))), "has no array 'phase_cycles'", id="no phase"),
+        pytest.param(
+            zipped(("a/material.npy", npy(SOLID)), ("a/phase_cycles.npy", npy(ZERO))),
+            "has no array 'material'; expected .*, found a/material, a/phase_cycles",
+            id="in a directory",
+        ),
+        pytest.param(
+            zipped(*[("material.npy", npy(SOLID))] * 2, ("phase_cycles.npy", npy(ZERO))),
+            "has 2 arrays 'material'; expected one",
+            id="one name twice",
+        ),
+        pytest.param(
+            zipped(("material.npy", npy(SOLID)), ("material", npy(SOLID)), ("phase_cycles", npy(ZERO))),
+            "has 2 arrays 'material'; expected one",
+            id="one name with and without suffix",
+        ),
+        pytest.param(
+            bodies(change=encrypted),
+            "material is encrypted; expected what numpy.savez writes",
+            id="encrypted",
+        ),
+        pytest.param(
+            bodies(method=zipfile.ZIP_LZMA), "material is compressed with method 14; expected", id="lzma"
+        ),
+        pytest.param(
+            bodies(method=zipfile.ZIP_BZIP2, change=renamed(bz2.compress(npy(SOLID))[:9], bytes(9))),
+            "material is compressed with method 12; expected",
+            id="corrupt bzip2",
+        ),
+        pytest.param(
+            bodies(method=zipfile.ZIP_DEFLATED, change=garbled),
+            "material is no array: Error -3",
+            id="deflate",
+        ),
+        pytest.param(bodies(change=garbled), "material is no array: Bad CRC-32", id="checksum"),
+        pytest.param(
+            bodies(change=renamed(bytes(100), bytes(99) + b"\1")),
+            "phase_cycles is no array: Bad CRC-32",
+            id="a bit of the phase",
+        ),
+        pytest.param(bodies(material=b"1, 1, 3"), "material is no array: EOF", id="a text"),
+        pytest.param(bodies(material=b"x" * 500), "material is no array: the magic string", id="a long text"),
+        pytest.param(bodies(material=b""), "material is no array: EOF", id="an empty member"),
+        pytest.param(
+            bodies(material=claiming()[:-8]), "material cannot be unpacked: EOF", id="half the data"
+        ),
+        pytest.param(bodies(material=header("{")), "material is no array: ", id="half a header"),
+        pytest.param(bodies(material=header("3")), "is no array: Header is not a dict", id="no dictionary"),
+        pytest.param(
+            bodies(material=header("(" * 5000)), "material is no array: .{3,200}$", id="nested brackets"
+        ),
+        pytest.param(
+            bodies(material=header("-" * 9000 + "1")), "material is no array: .{3,200}$", id="nested signs"
+        ),
+        pytest.param(bodies(material=header(" " * 20000)), "is no array: EOF", id="a long header"),
+        pytest.param(
+            bodies(material=b"\x93NUMPY\2\0\xff\xff\xff\xff"), "is no array: EOF", id="a header of 4 GB"
+        ),
+        pytest.param(
+            bodies(material=header(claiming()[10:-16].decode(), 9)),
+            "material cannot be unpacked: we only support format version",
+            id="a version to come",
+        ),
+        pytest.param(bodies(material=claiming(descr="()")), "material is no array: ", id="no type"),
+        pytest.param(
+            bodies(material=np.array([{}], object)[None, None]),
+            "material has the type object; expected whole numbers",
+            id="a pickle",
+        ),
+        pytest.param(
+            bodies(material=claiming("(1000000000000, 2, 2)")),
+            r"material has the shape \[1000000000000, 2, 2\], 4000000000000 cells; at most 16777216",
+            id="10^12 cells",
+        ),
+        pytest.param(
+            bodies(material=claiming(f"({2**40}, {2**40}, 1)")), "cells; at most 16777216", id="2^80 cells"
+        ),
+        pytest.param(
+            bodies(material=claiming("(-4, -2, 2)")), r"material has the shape \[-4, -2, 2\]", id="negative"
+        ),
+        pytest.param(
+            bodies(material=SOLID[0]),
+            r"material has the shape \[2, 2\]; expected \[X, Y, Z\] or \[N, X, Y, Z\]",
+            id="flat",
+        ),
+        pytest.param(
+            bodies(material=SOLID[:0], phase_cycles=ZERO[:0]),
+            r"material has the shape \[0, 2, 2\]",
+            id="no cells",
+        ),
+        pytest.param(
+            bodies(material=SOLID * 1.0), "material has the type float64; expected whole numbers", id="floats"
+        ),
+        pytest.param(
+            bodies(material=SOLID * 2),
+            "material has the code 2; codes: 0 empty, 1 passive, 3 contractile$",
+            id="code 2",
+        ),
+        pytest.param(
+            bodies(material=SOLID + np.uint16(256)), "material has the code 257", id="a code beyond uint8"
+        ),
+        pytest.param(bodies(material=SOLID * 0), "material: body 0 has no voxel", id="no voxel"),
+        pytest.param(
+            bodies(material=np.stack([SOLID, SOLID * 0]), phase_cycles=np.stack([ZERO, ZERO])),
+            "material: body 1 has no voxel",
+            id="no voxel in the second",
+        ),
+        pytest.param(
+            bodies(phase_cycles=ZERO[1:]),
+            r"phase_cycles has the shape \[3, 2, 2\], but material has \[4, 2, 2\]",
+            id="phase of another shape",
+        ),
+        pytest.param(
+            bodies(phase_cycles=claiming("(1000000000000, 2, 2)", "'<f8'")),
+            r"phase_cycles has the shape \[1000000000000, 2, 2\], but material has",
+            id="10^12 phases",
+        ),
+        pytest.param(
+            bodies(phase_cycles=claiming(descr="'<f8'")),
+            "phase_cycles cannot be unpacked: EOF",
+            id="no phases",
+        ),
+        pytest.param(
+            bodies(phase_cycles=np.full(CELLS, "x")), "phase_cycles has the type <U1", id="letters as phase"
+        ),
+        pytest.param(
+            bodies(phase_cycles=claiming(descr=f"'|S{10**9}'")), "phase_cycles has the type", id="long texts"
+        ),
+        pytest.param(
+            bodies(phase_cycles=ZERO * math.nan), "phase_cycles has a value that is not finite", id="nan"
+        ),
+        pytest.param(
+            bodies(phase_cycles=np.full(CELLS, np.finfo(np.longdouble).max)),
+            "phase_cycles has",
+            id="long double",
+        ),
+        pytest.param(
+            bodies(phase_cycles=ZERO + 1e300),
+            r"phase_cycles has the value 1e\+300; at most 1e\+06 cycles",
+            id="many cycles",
+        ),
+        pytest.param(
+            bodies(phase_cycles=np.full(CELLS, np.iinfo(np.int64).min)),
+            r"phase_cycles has the value 9\.22337e\+18; at most 1e\+06 cycles",
+            id="the int64 without an absolute value",
+        ),
+    ],
+)
+def test_what_is_no_body_is_refused_by_name(tmp_path: Path, content: bytes, message: str) -> None:
+    path = tmp_path / "given.npz"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=message) as caught:
+        read_bodies(path, MATERIALS)
+    assert str(caught.value).startswith(f"{path}: ")
+
+
+@pytest.mark.parametrize("make", [lambda _: None, Path.mkdir])
+def test_what_is_no_file_is_refused_by_name(tmp_path: Path, make: Callable[[Path], None]) -> None:
+    make(tmp_path / "given.npz")
+    with pytest.raises(InputError, match=r"given\.npz: cannot be read: "):
+        read_bodies(tmp_path / "given.npz", MATERIALS)
+
+
+@pytest.mark.parametrize("version", [(1, 0), (2, 0), (3, 0)])
+@pytest.mark.parametrize("suffix", ["", ".npy"])
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+def test_each_way_to_write_an_array_is_read(
+    tmp_path: Path, version: tuple[int, int], suffix: str, method: int
+) -> None:
+    path = tmp_path / "given.npz"
+    material, phase = np.asfortranarray(SOLID * 3, ">i8"), np.arange(16, dtype=np.int8).reshape(CELLS)
+    members = {"phase_cycles": phase, "label": np.array("x"), "material": material}
+    path.write_bytes(
+        zipped(*((name + suffix, npy(array, version)) for name, array in members.items()), method=method)
+    )
+    [(label, codes, cycles)] = read_bodies(path, MATERIALS)
+    assert label == "given.npz"
+    assert codes.dtype == np.uint8
+    assert cycles.dtype == np.float64
+    assert (codes == 3).all()
+    assert (cycles == phase).all()
+
+
+def test_several_bodies_are_numbered() -> None:
+    with np.load(GOLDEN) as arrays:
+        material, phase = arrays["material"], arrays["phase_cycles"]
+    read = read_bodies(GOLDEN, MATERIALS)
+    assert [label for label, _, _ in read] == [f"paper_preset.npz[{n}]" for n in range(36)]
+    assert (np.stack([codes for _, codes, _ in read]) == material).all()
+    assert (np.stack([cycles for _, _, cycles in read]) == phase).all()
+
+
+@pytest.fixture(scope="module")
+def damaged_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("damage") / "given.npz"
+
+
+flips = st.lists(st.tuples(st.integers(0, 2**16), st.integers(1, 255)), max_size=4)
+lengths = st.none() | st.integers(0, 2**10)
+methods = st.sampled_from([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+
+
+def damaged(content: bytes, flips: list[tuple[int, int]], length: int | None) -> bytes:
+    changed = bytearray(content)
+    for at, bits in flips:
+        changed[at % len(changed)] ^= bits
+    return bytes(changed[:length])
+
+
+def assert_bodies_or_refused(path: Path) -> None:
+    try:
+        read = read_bodies(path, MATERIALS)
+    except InputError:
+        return
+    for _, codes, cycles in read:
+        assert codes.dtype == np.uint8
+        assert codes.any()
+        assert np.isin(codes, (0, 1, 3)).all()
+        assert cycles.shape == codes.shape
+        assert (np.abs(cycles) <= 1e6).all()
+
+
+@given(flips=flips, length=lengths, method=methods)
+@settings(max_examples=200)
+def test_a_damaged_file_is_refused_if_it_is_no_body(
+    damaged_file: Path, flips: Any, length: int | None, method: int
+) -> None:
+    damaged_file.write_bytes(damaged(bodies(method=method), flips, length))
+    assert_bodies_or_refused(damaged_file)
+
+
+@given(name=st.sampled_from(["material", "phase_cycles"]), flips=flips, length=lengths)
+@settings(max_examples=200)
+def test_a_damaged_array_that_is_packed_well_is_refused_if_it_is_no_body(
+    damaged_file: Path, name: str, flips: Any, length: int | None
+) -> None:
+    arrays = {"material": npy(SOLID), "phase_cycles": npy(ZERO)}
+    damaged_file.write_bytes(bodies(**{**arrays, name: damaged(arrays[name], flips, length)}))
+    assert_bodies_or_refused(damaged_file)

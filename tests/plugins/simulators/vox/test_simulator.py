@@ -1,0 +1,257 @@
+"""The simulator `vox`: the laws of simulators, the reference data, and what its key leaves out."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+
+from evoframe import ConfigurationError, Design, InputError, Record
+from evoframe.testing import SimulatorContract
+from evoframe_simulators import FixedRegion, Vox
+from evoframe_simulators.vox.models import model_of
+
+DATA = Path(__file__).parents[3] / "data"
+PAPER = Record(("tip",), every=0.01, samples=(0, 5))
+
+
+def golden() -> dict[str, Any]:
+    with np.load(DATA / "paper_preset.npz") as arrays:
+        return dict(arrays)
+
+
+def designs() -> list[Design]:
+    data = golden()
+    return [
+        Design({"morphology": body, "controller": phase})
+        for body, phase in zip(data["material"], data["phase_cycles"], strict=True)
+    ]
+
+
+def small(seed: int = 0, canvas: tuple[int, int, int] = (4, 3, 3)) -> Design:
+    rng = np.random.default_rng(seed)
+    material = rng.choice(np.array([0, 1, 3, 3], np.uint8), canvas)
+    material[0] = 1
+    return Design({"morphology": material, "controller": rng.uniform(-6, 6, canvas)})
+
+
+class TestVox(SimulatorContract):
+    component = Vox(duration=0.05)
+
+    def designs(self) -> list[Design]:
+        body = small(1)
+        resting = body.roles["controller"] * (body.roles["morphology"] == 3)  # same key as body
+        lone = np.zeros((4, 3, 3), np.uint8)
+        lone[1, 1, 1] = 3  # no bond, so another time step
+        return [
+            body,
+            Design({**body.roles, "controller": resting}),
+            small(2),
+            small(3, (6, 2, 2)),
+            Design({"morphology": lone, "controller": np.zeros(lone.shape)}),
+        ]
+
+    def diverging(self) -> list[Design]:
+        empty = np.zeros((4, 3, 3), np.uint8)
+        return [Design({"morphology": empty, "controller": np.zeros(empty.shape)})]
+
+
+class TestWalkingVox(TestVox):
+    """With all that surrounds a free body, contacts that are right, and a divided time step."""
+
+    component = Vox(
+        duration=0.05,
+        substeps=2,
+        start_time=0.01,
+        ramp=0.02,
+        gravity=-9.81,
+        floor=True,
+        floor_slope=3.0,
+        fluid_drag=10.0,
+        fixed=(FixedRegion(size=(0.1, 1.0, 1.0), degrees_of_freedom=("y",)),),
+        collision_envelope=1.2,
+        contact_damping=0.5,
+        contact_friction=True,
+        complete_contacts=True,
+    )
+
+    def record(self) -> Record:
+        return Record(("tip", "face", "body", "energy", "strain", "momentum"), every=0.003)
+
+
+class TestUnstableVox(TestVox):
+    """With a damping that no time step can follow."""
+
+    component = Vox(duration=0.05, bond_damping=1e4)
+
+    def designs(self) -> list[Design]:
+        return [
+            Design({"morphology": np.full((n, 1, 1), 1, np.uint8), "controller": np.zeros((n, 1, 1))})
+            for n in (1, 2, 3)
+        ]
+
+    def diverging(self) -> list[Design]:
+        return [small(1), small(2)]
+
+
+class TestPaper:
+    def test_displacements_are_those_of_the_authors_engine(self, capsys: pytest.CaptureFixture[str]) -> None:
+        outcomes = Vox().simulate(designs(), PAPER)
+        displacement = [outcome.tracks["tip"][1, 2] - outcome.tracks["tip"][0, 2] for outcome in outcomes]
+        worst = np.abs(np.array(displacement) - golden()["displacement"]).max()
+        with capsys.disabled():
+            print(f"\nvox against the authors' engine, 36 bodies: displacement within {worst:.1e} m", end=" ")  # noqa: T201
+        assert worst < 1e-9
+
+    def test_without_contraction_the_published_bodies_move_all_the_same(self) -> None:
+        still = Vox(expansion_coefficient=0.0)
+        outcomes = still.simulate([designs()[i] for i in (0, 3, 6)], PAPER)
+        displacement = [outcome.tracks["tip"][1, 2] - outcome.tracks["tip"][0, 2] for outcome in outcomes]
+        assert displacement == pytest.approx([0.0011106, 0.0019527, 0.0020189], abs=5e-8)
+
+    def test_samples_fall_after_the_steps_of_the_engine(self) -> None:
+        [outcome] = Vox().simulate(designs()[:1], Record(("tip",), every=0.01))
+        assert outcome.steps.tolist() == [1, 5, 9, 13, 17, 21]
+        assert outcome.times[[0, 5]] == pytest.approx([0.0032029, 0.0672616], abs=5e-8)
+
+
+class TestKey:
+    def key(self, vox: Vox, body: Design, **changed: Any) -> bytes:
+        return vox.key(Design({**body.roles, **changed}), PAPER)
+
+    def test_a_phase_counts_only_where_the_voxel_contracts(self) -> None:
+        body = small()
+        material, phase = body.roles["morphology"], body.roles["controller"]
+        idle = np.where(material == 3, phase, 0.5)
+        acting = np.where(material == 3, 0.5, phase)
+        assert self.key(Vox(), body, controller=idle) == self.key(Vox(), body)
+        assert self.key(Vox(), body, controller=acting) != self.key(Vox(), body)
+
+    def test_a_phase_counts_in_single_precision_as_the_solver_reads_it(self) -> None:
+        body = small()
+        phase = body.roles["controller"]
+        assert self.key(Vox(), body, controller=phase * (1 + 1e-12)) == self.key(Vox(), body)
+        assert self.key(Vox(), body, controller=phase * (1 + 1e-6)) != self.key(Vox(), body)
+        zero = np.zeros(phase.shape)
+        assert self.key(Vox(), body, controller=zero) == self.key(Vox(), body, controller=-zero)
+
+    def test_without_expansion_no_phase_counts(self) -> None:
+        still = Vox(expansion_coefficient=0.0)
+        assert self.key(still, small(), controller=np.zeros((4, 3, 3))) == self.key(still, small())
+
+    def test_the_shape_counts(self) -> None:
+        body = small()
+        turned = {role: array.reshape(3, 4, 3) for role, array in body.roles.items()}
+        assert self.key(Vox(), Design(turned)) != self.key(Vox(), body)
+
+
+def test_radians_are_cycles_times_two_pi() -> None:
+    body = small()
+    radians = Design({**body.roles, "controller": body.roles["controller"] * math.tau})
+    [in_cycles] = Vox().simulate([body], PAPER)
+    [in_radians] = Vox(phase_unit="radians").simulate([radians], PAPER)
+    assert in_radians.tracks["tip"] == pytest.approx(in_cycles.tracks["tip"], abs=1e-12)
+    assert Vox(phase_unit="radians").key(radians, PAPER) == Vox().key(body, PAPER)
+
+
+def test_an_empty_body_counts_as_diverged_before_the_first_step() -> None:
+    [empty] = TestVox().diverging()
+    [outcome] = Vox().simulate([empty], PAPER)
+    assert outcome.diverged_at == 0
+
+
+@pytest.mark.parametrize(
+    ("roles", "message"),
+    [
+        (
+            {"morphology": np.ones((2, 2), np.uint8)},
+            r"morphology is uint8\[2, 2\]; expected uint8\[X, Y, Z\]",
+        ),
+        ({"morphology": np.ones((4, 3, 3))}, "morphology is float64"),
+        (
+            {"controller": np.zeros((3, 3, 3))},
+            r"controller is float64\[3, 3, 3\]; expected float64\[4, 3, 3\]",
+        ),
+        ({"morphology": np.full((4, 3, 3), 7, np.uint8)}, "material has the code 7; codes: 0 empty"),
+        ({"controller": np.full((4, 3, 3), np.nan)}, "phase"),
+    ],
+)
+def test_what_is_no_design_is_refused(roles: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        Vox().simulate([Design({**small(5).roles, **roles})], PAPER)
+
+
+def test_what_is_no_design_has_no_key() -> None:
+    with pytest.raises(InputError, match=r"morphology is uint8\[36\]; expected uint8\[X, Y, Z\]"):
+        Vox().key(Design({role: array.reshape(-1) for role, array in small().roles.items()}), PAPER)
+
+
+def test_a_phase_beyond_single_precision_has_a_key_and_is_refused_by_the_solver() -> None:
+    body = Design({**small().roles, "controller": np.full((4, 3, 3), 1e300)})
+    assert Vox().key(body, PAPER)
+    with pytest.raises(InputError, match=r"within 1e6 cycles of 0$"):
+        Vox().simulate([body], PAPER)
+
+
+def test_a_sample_after_the_end_is_refused_with_the_numbers() -> None:
+    with pytest.raises(ConfigurationError) as caught:
+        Vox(duration=0.03).check(PAPER)
+    assert str(caught.value) == (
+        "sample 5 of one every 0.01 s is never taken: "
+        "vox makes 10 steps in simulator.duration = 0.03 s, samples 0 to 2; "
+        "simulate longer, or set an objective that looks earlier or more often"
+    )
+
+
+def lone(size: int = 2) -> Design:
+    material = np.zeros((size, 1, 1), np.uint8)
+    material[-1] = 3
+    return Design({"morphology": material, "controller": np.zeros(material.shape)})
+
+
+class TestBodyWithoutBonds:
+    """Its time step is longer than that of others where a voxel is larger than 1 m."""
+
+    vox = Vox(voxel_size=4.0, duration=10.0)
+
+    def test_makes_fewer_steps_than_others_if_a_voxel_is_large(self) -> None:
+        bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
+        with_bond, without = self.vox.simulate([bar, lone()], Record(("tip",)))
+        assert len(without.steps) < len(with_bond.steps)
+        assert without.diverged_at is None
+
+    @pytest.mark.parametrize("vox", [vox, Vox()])
+    @pytest.mark.parametrize("every", [0.0, 0.0032, 0.01, 1.0])
+    def test_has_every_sample_that_is_accepted(self, vox: Vox, every: float) -> None:
+        with pytest.raises(ConfigurationError) as caught:
+            vox.check(Record(("tip",), every=every, samples=(10**9,)))
+        [last] = map(int, re.findall(r"samples 0 to (\d+);", str(caught.value)))
+        record = Record(("tip",), every=every, samples=(last,))
+        vox.check(record)
+        bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
+        for outcome in vox.simulate([bar, lone(), lone(1)], record):
+            assert len(outcome.steps) == 1
+
+    def test_has_no_sample_after_its_own_end(self) -> None:
+        with pytest.raises(InputError, match=r"beyond the end of the simulation$"):
+            self.vox.simulate([lone()], Record(("tip",), samples=(10**9,)))
+
+
+def test_a_long_duration_is_checked_at_once() -> None:
+    vox = Vox(duration=1e9, step_limit=2**53)
+    vox.check(Record(("tip",), every=0.01, samples=(0, 10**10)))
+
+
+def test_settings_without_a_usable_time_step_are_refused_without_naming_a_body() -> None:
+    with pytest.raises(ValueError, match=r"no usable time step \(at most 2\^53 steps\)$"):
+        Vox(density=1e-6, youngs_modulus=1e18, voxel_size=1e-6, duration=1e9)
+
+
+def test_settings_with_one_canvas_share_a_model() -> None:
+    assert model_of(Vox(), (4, 3, 3)) is model_of(attrs.evolve(Vox()), (4, 3, 3))
+    assert model_of(Vox(), (4, 3, 3)) is not model_of(Vox(duration=1.0), (4, 3, 3))

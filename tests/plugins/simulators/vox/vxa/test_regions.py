@@ -1,0 +1,191 @@
+"""Regions in VXA files: the same cells are held in the engine's arithmetic and in that of ``vox``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from lxml import etree
+from numpy.typing import NDArray
+
+from evoframe import Design, InputError
+from evoframe_simulators import FixedRegion, Vox
+from evoframe_simulators.vox.regions import fixed_mask
+from evoframe_simulators.vox.vxa import read_vxa
+from evoframe_simulators.vox.vxa.cells import Lattice, as_engine_holds, as_vox_holds
+
+Write = Callable[..., Path]
+
+ALL_FREEDOMS = 63
+
+
+def engine_mask(region: FixedRegion, lattice: Lattice) -> NDArray[np.bool_]:
+    """Return which cells a region holds as the engine computes it."""
+    held = []
+    for start, length, cells in zip(region.origin, region.size, lattice.canvas, strict=True):
+        place = lattice.edge * (np.arange(cells) + 0.5) / (lattice.edge * cells)
+        half = (lattice.edge / 2) / (lattice.edge * cells)
+        held.append((place + half > start) & (place - half < start + length))
+    mask = np.zeros(lattice.canvas, np.bool_)
+    mask[np.ix_(*held)] = True
+    return mask
+
+
+def vox_mask(region: FixedRegion, lattice: Lattice) -> NDArray[np.bool_]:
+    return fixed_mask([region], lattice.canvas) > 0
+
+
+def mask_of(region: FixedRegion | None, lattice: Lattice) -> NDArray[np.bool_]:
+    """Return which cells a region holds in both arithmetics."""
+    if region is None:
+        return np.zeros(lattice.canvas, np.bool_)
+    engine, vox = engine_mask(region, lattice), vox_mask(region, lattice)
+    assert (engine == vox).all()
+    assert engine.any()
+    return vox
+
+
+lattices = st.builds(
+    Lattice,
+    canvas=st.tuples(*[st.integers(1, 60)] * 3),
+    edge=st.sampled_from([0.001, 0.01, 0.03, 0.05, 0.1, 0.7, 1.0]) | st.floats(1e-6, 1e3),
+)
+
+
+@st.composite
+def faces_on_cells(draw: st.DrawFn, lattice: Lattice) -> FixedRegion:
+    """Regions whose faces lie between cells, as far as numbers can say so."""
+    firsts = [draw(st.integers(0, cells - 1)) for cells in lattice.canvas]
+    lasts = [draw(st.integers(first, n - 1)) for first, n in zip(firsts, lattice.canvas, strict=True)]
+    pairs = zip(firsts, lasts, lattice.canvas, strict=True)
+    spans = [(first / n, draw(st.sampled_from([(last + 1 - first) / n, 0.0]))) for first, last, n in pairs]
+    (x, dx), (y, dy), (z, dz) = spans
+    return FixedRegion((x, y, z), (dx, dy, dz))
+
+
+anywhere = st.builds(
+    FixedRegion, origin=st.tuples(*[st.floats(-1, 2)] * 3), size=st.tuples(*[st.floats(0, 2)] * 3)
+)
+cases = lattices.flatmap(lambda lattice: st.tuples(st.just(lattice), faces_on_cells(lattice) | anywhere))
+
+ODD = Lattice((20, 1, 1), 0.01), FixedRegion((0.0, 0.0, 0.0), (0.35, 1.0, 1.0))
+"""The engine holds a cell more of this region, whose face lies between two."""
+
+
+def test_the_two_arithmetics_differ_where_a_face_lies_between_cells() -> None:
+    lattice, region = ODD
+    assert np.flatnonzero(engine_mask(region, lattice)).tolist() == list(range(8))
+    assert np.flatnonzero(vox_mask(region, lattice)).tolist() == list(range(7))
+
+
+@given(case=cases)
+@example(case=ODD)
+def test_what_is_written_holds_in_both_what_vox_holds(case: tuple[Lattice, FixedRegion]) -> None:
+    lattice, region = case
+    held = mask_of(as_vox_holds(region, lattice.canvas), lattice)
+    assert (held == vox_mask(region, lattice)).all()
+
+
+@given(case=cases)
+@example(case=ODD)
+def test_what_is_read_holds_in_both_what_the_engine_holds(case: tuple[Lattice, FixedRegion]) -> None:
+    lattice, region = case
+    held = mask_of(as_engine_holds(region, lattice), lattice)
+    assert (held == engine_mask(region, lattice)).all()
+
+
+@given(data=st.data(), lattice=lattices)
+def test_every_run_of_cells_can_be_said(data: st.DataObject, lattice: Lattice) -> None:
+    spans = [sorted(data.draw(st.tuples(*[st.integers(0, n - 1)] * 2))) for n in lattice.canvas]
+    x, y, z = ((first + 0.25) / n for (first, _), n in zip(spans, lattice.canvas, strict=True))
+    dx, dy, dz = ((last - first + 0.5) / n for (first, last), n in zip(spans, lattice.canvas, strict=True))
+    expected = np.zeros(lattice.canvas, np.bool_)
+    expected[tuple(slice(first, last + 1) for first, last in spans)] = True
+    written = as_vox_holds(FixedRegion((x, y, z), (dx, dy, dz), ("x", "rz")), lattice.canvas)
+    assert (mask_of(written, lattice) == expected).all()
+    assert written is not None
+    assert written.degrees_of_freedom == ("x", "rz")
+    assert as_engine_holds(written, lattice) == written  # so that a file says the same, however often read
+
+
+def test_the_default_is_the_slab_in_both() -> None:
+    lattice = Lattice((6, 3, 3), 0.05)
+    written = as_vox_holds(FixedRegion(), lattice.canvas)
+    assert written is not None
+    assert (written.origin[0], written.size[0]) == (0.5 / 6, 0.0)
+    assert mask_of(written, lattice).tolist() == [[[x == 0] * 3] * 3 for x in range(6)]
+
+
+def bar(cells: int) -> Design:
+    return Design({"morphology": np.ones((cells, 1, 1), np.uint8), "controller": np.zeros((cells, 1, 1))})
+
+
+class TestFiles:
+    def test_a_face_between_cells_is_written_for_the_engine(self, tmp_path: Path) -> None:
+        lattice, region = ODD
+        vox = Vox(fixed=(region,), voxel_size=lattice.edge)
+        path = tmp_path / "a.vxa"
+        path.write_bytes(vox.export(bar(20), "vxa").data)
+        [again] = read_vxa(path).options["fixed"]
+        assert np.flatnonzero(mask_of(again, lattice)).tolist() == list(range(7))
+        text = path.read_text()
+        assert f"<X>{0.5 / 20!r}</X>" in text
+        assert f"<dX>{6 / 20!r}</dX>" in text
+
+    def test_a_face_between_cells_is_read_as_the_engine_does(self, vxa: Write) -> None:
+        lattice, _ = ODD
+        row = f"<Layer>{'1' * 20}</Layer>"
+        path = vxa("voxcad", X_Voxels=20, dX=0.35)
+        text = path.read_text().replace("<Layer>11111</Layer>", row)
+        path.write_text(text.replace("<Lattice>", "<Lattice><Lattice_Dim>0.01</Lattice_Dim>"))
+        held = [
+            np.flatnonzero(mask_of(region, lattice)).tolist() for region in read_vxa(path).options["fixed"]
+        ]
+        assert held == [list(range(8)), [19]]
+
+    @pytest.mark.parametrize(
+        "region",
+        [
+            FixedRegion((1.0, 0.0, 0.0), (1.0, 1.0, 1.0)),
+            FixedRegion((-1.0, 0.0, 0.0), (1.0, 1.0, 1.0)),
+            FixedRegion((0.0, 2.0, 0.0), (1.0, 1.0, 1.0)),
+            FixedRegion((0.5, 0.0, 0.0), (0.0, 1.0, 1.0)),
+        ],
+    )
+    def test_regions_without_cells_are_neither_written_nor_counted(self, region: FixedRegion) -> None:
+        root = etree.fromstring(Vox(fixed=(region, FixedRegion())).export(bar(4), "vxa").data)
+        [section] = root.findall("Environment/Boundary_Conditions")
+        assert section.findtext("NumBCs") == "1"
+        assert [found.findtext("DofFixed") for found in section.findall("FRegion")] == [str(ALL_FREEDOMS)]
+        alone = etree.fromstring(Vox(fixed=(region,)).export(bar(4), "vxa").data)
+        assert alone.findtext("Environment/Boundary_Conditions/NumBCs") == "0"
+
+    def test_regions_without_cells_are_not_read(self, vxa: Write) -> None:
+        assert read_vxa(vxa(X=1.5)).options["fixed"] == ()
+
+    def test_a_long_canvas_takes_no_time(self) -> None:
+        lattice = Lattice((2**24, 1, 1), 0.01)
+        region = FixedRegion((0.25, 0.0, 0.0), (0.5, 1.0, 1.0))
+        for _ in range(10_000):
+            held = as_engine_holds(region, lattice)
+        assert held is not None
+        first, length = held.origin[0] * 2**24, held.size[0] * 2**24
+        assert first == pytest.approx(2**22, abs=2)
+        assert length == pytest.approx(2**23, abs=3)
+
+    @pytest.mark.parametrize("edge", ["5e-324", "1e308"])
+    def test_an_edge_out_of_range_is_refused(self, vxa: Write, edge: str) -> None:
+        with pytest.raises(InputError, match=r"given\.vxa: "):
+            Vox.settings_of(vxa(Lattice_Dim=edge))
+
+
+def test_the_settings_are_the_same_when_written_again(tmp_path: Path) -> None:
+    path = tmp_path / "a.vxa"
+    path.write_bytes(Vox().export(bar(4), "vxa").data)
+    once = read_vxa(path).options
+    path.write_bytes(Vox(**once).export(bar(4), "vxa").data)
+    assert read_vxa(path).options == once
