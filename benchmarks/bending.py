@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 import evoframe
 from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, PASSIVE, Design, Record
-from evoframe.record.verification import verify_design
+from evoframe.designs.verifying import verify_design
 
 FREQUENCIES = (1.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0, 12.0)  # Hz
 DAMPINGS = (0.0, 0.001, 0.003, 0.01)

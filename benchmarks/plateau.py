@@ -54,7 +54,7 @@ def run_one(name: str, seed: int, out: Path) -> Path:
 def best_within(finished: evoframe.Run, simulations: float) -> float:
     """Return the displacement of the best pair among the first so many simulations."""
     spent, turn = 0, 0
-    for row in finished.workload:
+    for row in finished.workload():
         spent += row["simulations"]
         if spent > simulations:
             break
@@ -81,7 +81,7 @@ def all_contractile() -> tuple[float, float]:
 
 def describe(name: str, runs: list[evoframe.Run], budget: float) -> dict[str, Any]:
     """Return the figures of one configuration."""
-    best = [run.champion.score for run in runs]
+    best = [run.champion().score for run in runs]
     low, median, high = statistics.quantiles(best, n=4, method="inclusive")
     return {
         "configuration": name,
@@ -104,13 +104,13 @@ def first_turn_with(finished: evoframe.Run, score: float) -> int | None:
 
 def empty_share(finished: evoframe.Run) -> float:
     """Return the share of the interior of the champion's body that is empty."""
-    interior = finished.champion.design.roles["morphology"][1:-1, 1:-1, 1:-1]
+    interior = finished.champion().design.roles["morphology"][1:-1, 1:-1, 1:-1]
     return round(float((interior == 0).mean()), 3)
 
 
 def simulations(finished: evoframe.Run) -> int:
     """Return how many simulations a run made."""
-    return sum(row["simulations"] for row in finished.workload)
+    return sum(row["simulations"] for row in finished.workload())
 
 
 def main() -> None:

@@ -25,8 +25,8 @@ from benchmarks.stages import Stages, Watched
 from benchmarks.timing import Action, Effort, cores_used, interleaved
 from evoframe import Coevolution, Design, ExecutorRun, RunConfig
 from evoframe.record.store import Store
-from evoframe.registry.observers import Observers
-from evoframe.runs.execution import prepare
+from evoframe.registry.registry import Plugins
+from evoframe.runs.starting import prepare
 from evoframe_libcppn import CppnNetwork
 
 __all__ = ["runs"]
@@ -101,15 +101,15 @@ def _play(config: RunConfig) -> _Played:
     stages = Stages()
     with tempfile.TemporaryDirectory() as directory:
         with stages.watch(_watched(config)):
-            execution = prepare(config, Path(directory) / "run")
+            execution = prepare(config, Plugins(), Path(directory) / "run")
             began, cpu_began = time.perf_counter(), time.process_time()
-            execution.play(Observers(config.discovered.manager))
+            finished = execution.play()
             wall, cpu = time.perf_counter() - began, time.process_time() - cpu_began
         _check_reached(stages, config)
         began = time.perf_counter()
-        execution.verify()
+        execution.verify(finished)
         verifying = time.perf_counter() - began
-        work = evoframe.load_run(execution.directory).workload
+        work = finished.workload()
         size = sum(path.stat().st_size for path in execution.directory.iterdir()) / 1e6
     pairs, simulated = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
     rest = {"the rest": cpu - sum(stages.cpu.values())}

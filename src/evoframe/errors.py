@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import attrs
+
 __all__ = [
     "ComponentError",
     "ConfigurationError",
@@ -55,6 +57,7 @@ class RunError(EvoframeError):
     """A run that cannot go on, or a run directory that cannot be used."""
 
 
+@attrs.frozen(str=False, eq=False)
 class ComponentError(RunError):
     """A component failed, or returned what it must not.
 
@@ -64,19 +67,20 @@ class ComponentError(RunError):
         concerns: Which individuals it was about; may be empty.
         keys: The keys of the designs that it was about, if only they are known.
         places: Their places among all designs that are evaluated together.
+        offered: Its name, and the plugin that offers it, where that is known.
     """
 
-    def __init__(self, component: str, problem: str, concerns: str = "") -> None:
-        super().__init__(component, problem, concerns)  # all of them, so that it can pass between processes
-        self.component = component
-        self.problem = problem
-        self.concerns = concerns
-        self.keys: tuple[bytes, ...] = ()
-        self.places: tuple[int, ...] = ()
+    component: str
+    problem: str
+    concerns: str = ""
+    keys: tuple[bytes, ...] = ()
+    places: tuple[int, ...] = ()
+    offered: str = ""
 
     def __str__(self) -> str:
+        offered = f"{self.offered}: " if self.offered else ""
         about = f" ({self.concerns})" if self.concerns else ""
-        return f"{self.component}: {self.problem}{about}"
+        return f"{self.component}: {offered}{self.problem}{about}"
 
 
 class WorkerError(RunError):

@@ -131,7 +131,7 @@ class TestRun:
     def test_ends_with_a_summary_and_the_directory(self, evoframe: Evoframe, tmp_path: Path) -> None:
         ran = evoframe("run", "quick", "--seed", 4)
         assert ran.returncode == 0
-        champion = package.load_run(tmp_path / "runs" / "quick-4").champion
+        champion = package.load_run(tmp_path / "runs" / "quick-4").champion()
         assert repr(champion.score) in ran.stdout
         assert "runs/quick-4" in ran.stdout
         assert re.search(r"turn 10/10 .* morphology \S+ .* controller \S+ .* sim/s .*% cached", ran.stderr)
@@ -172,7 +172,7 @@ class TestRun:
             "-p", toys.__file__, "run", "toy.toml", "--set", "simulator.limit=0.15", "--out", "here"
         )
         assert ran.returncode == 0, ran.stderr
-        pairs = package.load_run(tmp_path / "here").pairs
+        pairs = package.load_run(tmp_path / "here").pairs()
         diverged = sum(pair["score"] is None for pair in pairs)
         assert diverged > 0
         assert f"simulated and {diverged} diverged" in ran.stdout
@@ -193,8 +193,8 @@ class TestRun:
         assert ran.returncode == 0, ran.stderr
         assert "8 turns into here" in ran.stderr
         finished = package.load_run(tmp_path / "here")
-        assert finished.summary["turns"] == 8
-        assert sum(pair["turn"] == 9 for pair in finished.pairs) == 1
+        assert finished.summary()["turns"] == 8
+        assert sum(pair["turn"] == 9 for pair in finished.pairs()) == 1
 
     def test_ends_with_the_verification_of_its_champion(self, evoframe: Evoframe, tmp_path: Path) -> None:
         (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
@@ -231,7 +231,7 @@ class TestRun:
         assert ran.stderr.splitlines()[-1] == (
             "Error: here: the run is complete and saved, but its champion cannot be verified: no variant fits"
         )
-        assert package.load_run(tmp_path / "here").summary["turns"] == 8
+        assert package.load_run(tmp_path / "here").summary()["turns"] == 8
 
     def test_an_interrupt_of_the_verification_leaves_the_complete_run(self, tmp_path: Path) -> None:
         with slow_run(tmp_path, "simulator={name='toy-unverifiable', delay=3600.0}") as process:
@@ -239,7 +239,7 @@ class TestRun:
             process.send_signal(signal.SIGINT)
             told(process, "Interrupted; the run is complete and saved in here, but not verified")
             assert process.wait(60) == 130
-        assert package.load_run(tmp_path / "here").summary["turns"] == 8
+        assert package.load_run(tmp_path / "here").summary()["turns"] == 8
 
     def test_names_are_shown_as_they_are_written(self, evoframe: Evoframe) -> None:
         ran = evoframe("run", "quick", "--set", "run.generations=0", "--out", "r[/a] [bold]x :smile:")
@@ -253,7 +253,7 @@ class TestRun:
             process.send_signal(signal.SIGINT)
             told(process, "Interrupted; all turns up to ")
             assert process.wait(60) == 130
-        turns = package.load_run(tmp_path / "here").turns
+        turns = package.load_run(tmp_path / "here").turns()
         assert 2 <= len(turns) < 200
 
     def test_a_second_interrupt_stops_at_once(self, tmp_path: Path) -> None:
@@ -264,7 +264,7 @@ class TestRun:
             process.send_signal(signal.SIGINT)
             told(process, "Interrupted; no turn was finished in here")
             assert process.wait(60) == 130
-        assert package.load_run(tmp_path / "here").turns == []
+        assert package.load_run(tmp_path / "here").turns() == []
 
 
 def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def test_a_full_disk_stops_the_run_and_it_goes_on_when_there_is_room(
     assert resumed.returncode == 0, resumed.stderr
     assert evoframe("run", *toy, "toy.toml", *longer, "--out", "undisturbed").returncode == 0
     assert_same_result(tmp_path / "undisturbed", tmp_path / "left")
-    assert load_run(tmp_path / "left").finished
+    assert load_run(tmp_path / "left").finished()
 
 
 def test_where_nothing_can_be_written_nothing_is_begun(

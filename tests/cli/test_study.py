@@ -146,8 +146,8 @@ def test_champions_that_were_not_verified_are_verified_by_the_next_sitting(
     assert evoframe(*arguments).returncode == 1  # the second has failed
     assert evoframe(*arguments, "--retry").returncode == 0
     for directory in (first, second):
-        assert load_run(directory).verification is not None
-        assert load_run(directory).resumes == []
+        assert load_run(directory).verification() is not None
+        assert load_run(directory).resumes() == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
@@ -216,7 +216,7 @@ def test_runs_at_which_another_process_is_are_left_to_it(
     assert "failed" not in other.stderr
     assert len(list((tmp_path / "s").glob("*/*/0?/champion.json"))) == 12
     for config in (tmp_path / "s").glob("*/*/0?/config.toml"):
-        assert load_run(config.parent).resumes == []
+        assert load_run(config.parent).resumes() == []
 
 
 @pytest.mark.parametrize("attempt", range(4))
@@ -232,8 +232,8 @@ def test_processes_that_start_together_divide_the_runs_among_them(
     assert not list((tmp_path / "s").rglob("failure.json"))
     assert len((tmp_path / "s" / "rows.csv").read_text().splitlines()) == 13
     for config in (tmp_path / "s").glob("*/*/0?/config.toml"):
-        assert load_run(config.parent).finished
-        assert load_run(config.parent).resumes == []
+        assert load_run(config.parent).finished()
+        assert load_run(config.parent).resumes() == []
 
 
 def test_a_picture_on_a_terminal(toy: list[str], tmp_path: Path) -> None:

@@ -50,7 +50,7 @@ def columns(line: str) -> list[str]:
 
 class TestRun:
     def test_prints_what_is_left_of_its_champions_score(self, evoframe: Evoframe, toy_run: Path) -> None:
-        score = load_run(toy_run).champion.score
+        score = load_run(toy_run).champion().score
         verified = evoframe("verify", *TOYS, "here")
         assert verified.returncode == 0, verified.stderr
         title, *table = verified.stdout.splitlines()

@@ -123,9 +123,9 @@ class TestRun:
     def test_stands_for_its_champion_as_it_was_simulated(self, plugins: Plugins, finished: Run) -> None:
         job = read_job(finished.directory, None, [], plugins, runs=True)
         assert job.run == finished
-        assert job.score == finished.champion.score
+        assert job.score == finished.champion().score
         assert job.labels == (str(finished.directory),)
-        assert job.config.simulation() == finished.champion.simulation
+        assert job.config.simulation() == finished.champion().simulation
         assert job.config.executor.name == "toy-here"
 
     @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ class TestRun:
     def test_has_its_score_only_as_long_as_simulation_and_objective_are_the_same(
         self, plugins: Plugins, finished: Run, overrides: list[str], same: bool
     ) -> None:
-        expected = finished.champion.score if same else None
+        expected = finished.champion().score if same else None
         for path in (finished.directory, finished.directory / "champion.json"):
             assert read_job(path, None, overrides, plugins, runs=True).score == expected
 

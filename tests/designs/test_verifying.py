@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 import toys
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from evoframe import Design, Finding, Outcome, Record, Score, Variant, Verification
-from evoframe.record.verification import can_verify, verification_from_json, verify_design
+from evoframe.contract.optional import SupportsVariants
+from evoframe.designs.verifying import verify_design
+from evoframe.record.verification import verification_from_json
 from evoframe_executors import Threads
 
 PAIR = Design({"a": np.array([3.0]), "b": np.array([-2.0])})
@@ -73,8 +74,8 @@ def test_a_variant_is_simulated_and_recorded_in_its_own_way() -> None:
 
 
 def test_only_who_offers_variants_can_verify() -> None:
-    assert can_verify(toys.Varied())
-    assert not can_verify(toys.Product())
+    assert isinstance(toys.Varied(), SupportsVariants)
+    assert not isinstance(toys.Product(), SupportsVariants)
 
 
 class TestFigures:

@@ -11,8 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 import pytest
 import toys
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from loops import continued, history, stopped
 
 from evoframe import Design, PopulationReport, Record, RunConfig, RunError, Turn, assemble

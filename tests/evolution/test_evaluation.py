@@ -10,8 +10,7 @@ import attrs
 import numpy as np
 import pytest
 import toys
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from evoframe import Design, Outcome, Record, RunError
 from evoframe.evolution.evaluation import Evaluator

@@ -1,7 +1,6 @@
 """Streams that belong to names."""
 
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from evoframe.evolution.randomness import stream
 

@@ -53,7 +53,7 @@ def test_the_table_of_components_is_complete() -> None:
         "objective": "objective",
         "executor": "executor",
     }
-    plugins = evoframe.load_config("quick").discovered
+    plugins = evoframe.discover()
     listed = {key: sorted(re.findall(r"`(\S+?)`", names)) for key, names in rows if key in kinds}
     assert listed == {key: plugins.names(kind) for key, kind in kinds.items()}
 

@@ -46,14 +46,14 @@ def short(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 class TestRecord:
     def test_the_initial_meeting_has_625_pairs_and_each_turn_50(self, short: Run) -> None:
-        counts = [sum(row["turn"] == turn for row in short.pairs) for turn in range(7)]
+        counts = [sum(row["turn"] == turn for row in short.pairs()) for turn in range(7)]
         assert counts == [625, *[50] * 6]
 
     def test_populations_keep_their_size(self, short: Run) -> None:
-        for turn in short.turns:
+        for turn in short.turns():
             members = [
                 row
-                for row in short.individuals
+                for row in short.individuals()
                 if (row["turn"], row["population"]) == (turn["turn"], turn["population"])
             ]
             assert len({member["genome_id"] for member in members}) == 25
@@ -68,8 +68,8 @@ class TestRecord:
             collaboration={"n": n},
             run={"generations": 2},
         )
-        pairs = finished.pairs
-        for individual in finished.individuals:
+        pairs = finished.pairs()
+        for individual in finished.individuals():
             scores = [
                 pair["score"]
                 for pair in pairs
@@ -80,7 +80,7 @@ class TestRecord:
             assert individual["fitness"] == pytest.approx(mean(scores), rel=1e-12)
 
     def test_the_champion_is_enclosed_and_uses_the_codes_of_the_authors(self, short: Run) -> None:
-        body = short.champion.design.roles["morphology"]
+        body = short.champion().design.roles["morphology"]
         assert body.shape == (20, 8, 8)
         interior = body[1:-1, 1:-1, 1:-1].copy()
         assert set(np.unique(interior)) <= {0, 1, 3}
@@ -89,9 +89,9 @@ class TestRecord:
         assert (shell == 1).all()
 
     def test_the_champion_is_verified_and_can_be_read_by_the_original_engine(self, short: Run) -> None:
-        verification = short.verification
+        verification = short.verification()
         assert verification is not None
-        assert verification.unchanged.value == short.champion.score
+        assert verification.unchanged.value == short.champion().score
         shares = {finding.name: verification.share(finding) for finding in verification.findings}
         assert len(shares) == 5
         assert shares["contraction off"] is not None
@@ -153,7 +153,7 @@ class TestSwaps:
     )
     def test_each_runs(self, settings: dict[str, Any], tmp_path: Path) -> None:
         finished = evoframe.run("quick", out=tmp_path / "run", **{"run.generations": 1, **settings})
-        assert math.isfinite(finished.champion.score)
+        assert math.isfinite(finished.champion().score)
 
     def test_a_file_with_weights_runs(self, tmp_path: Path) -> None:
         path = tmp_path / "mine.toml"

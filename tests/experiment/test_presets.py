@@ -95,6 +95,6 @@ def test_a_preset_runs(preset: str, tmp_path: Any) -> None:
     small: dict[str, Any] = {f"populations.{role}.size": 3 for role in (MORPHOLOGY, CONTROLLER)}
     settings = {**small, "run.generations": 1, "simulator.duration": 0.55, "collaboration.n": 1}
     finished = evoframe.run(preset, out=tmp_path / "run", aggregator="am", **settings)
-    assert len(finished.turns) == 4
-    assert finished.champion.score >= 0
-    assert [row["score"] for row in finished.pairs if row["score"] is not None]
+    assert len(finished.turns()) == 4
+    assert finished.champion().score >= 0
+    assert [row["score"] for row in finished.pairs() if row["score"] is not None]

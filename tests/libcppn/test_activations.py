@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 from cppns import LIMIT, NEAT, PAPER, Gene
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
 from evoframe_libcppn import ACTIVATIONS, CppnNetwork

@@ -4,8 +4,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import pytest
 from cppns import Gene, evaluate
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 

@@ -14,9 +14,10 @@ import toys
 from modules import plugin
 
 from evoframe import ConfigurationError, PluginError, PluginWarning, RunConfig, hookimpl
+from evoframe.contract.config import Source
 from evoframe.registry.discovery import discover
 from evoframe.registry.observers import Observers
-from evoframe.registry.registry import Plugins, Source
+from evoframe.registry.registry import Plugins
 
 HERE = Source("here", "1.0", "main")
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import toys
 
-from evoframe import ConfigurationError, Design, InputError, Plugins, load_run, robustness, run
+from evoframe import ConfigurationError, Design, InputError, Plugins, load_run, measure_robustness, run
 from evoframe.contract.config import RunConfig
 from evoframe.robustness.candidates import Candidates, read_candidates
 from evoframe.study.conduct import claim
@@ -199,11 +199,11 @@ def test_a_simulator_without_random_controllers_is_refused(
 
 class TestFromPython:
     def test_runs_and_paths_are_measured(self, toy_plugins: Plugins, two_runs: list[str]) -> None:
-        found = robustness(load_run(Path("run-1")), "run-2", controllers=5, plugins=toy_plugins)
+        found = measure_robustness(load_run(Path("run-1")), "run-2", controllers=5, plugins=toy_plugins)
         assert [body.label for body in found.setting.bodies] == two_runs
         assert found.scores.shape == (5, 2)
         assert found.setting.simulation["simulator"]["name"] == "toy-steered"
-        louder = robustness(*two_runs, controllers=5, plugins=toy_plugins, simulator={"gain": 2.0})
+        louder = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins, simulator={"gain": 2.0})
         assert (louder.scores == 2 * found.scores).all()
 
     @pytest.mark.parametrize(("controllers", "seed"), [(0, 1), (1, -1)])
@@ -211,4 +211,4 @@ class TestFromPython:
         self, toy_plugins: Plugins, two_runs: list[str], controllers: int, seed: int
     ) -> None:
         with pytest.raises(ConfigurationError, match=r"^expected 1 or more controllers and a seed from 0 up"):
-            robustness("run-1", plugins=toy_plugins, controllers=controllers, seed=seed)
+            measure_robustness("run-1", plugins=toy_plugins, controllers=controllers, seed=seed)

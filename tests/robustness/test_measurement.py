@@ -9,13 +9,13 @@ import attrs
 import numpy as np
 import pytest
 import toys
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from measuring import body, measure, setting
 
 from evoframe import Design, Divergence, InputError, WorkerError
+from evoframe.contract.optional import SupportsPublished, SupportsRandomControllers
 from evoframe.errors import ComponentError
-from evoframe.robustness.measurement import Bench, can_draw, can_publish, controlled, digest_of
+from evoframe.robustness.measurement import Bench, controlled, digest_of
 from evoframe_executors import Processes, Threads
 
 numbers = st.lists(st.floats(0.5, 4.0), min_size=1, max_size=5, unique=True)
@@ -100,10 +100,10 @@ class TestDigest:
 
 class TestSimulator:
     def test_is_asked_only_for_what_it_offers(self) -> None:
-        assert can_draw(toys.Steered())
-        assert can_publish(toys.Steered())
-        assert not can_draw(toys.Varied())
-        assert not can_publish(toys.Varied())
+        assert isinstance(toys.Steered(), SupportsRandomControllers)
+        assert isinstance(toys.Steered(), SupportsPublished)
+        assert not isinstance(toys.Varied(), SupportsRandomControllers)
+        assert not isinstance(toys.Varied(), SupportsPublished)
 
     def test_that_draws_no_design_is_named(self) -> None:
         class Careless(toys.Steered):

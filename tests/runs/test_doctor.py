@@ -14,11 +14,12 @@ from recorded import rewritten
 
 from evoframe import Plugins, RunConfig, load_run, run
 from evoframe.errors import InputError
-from evoframe.files.locks import locked
+from evoframe.files.locks import acquire_lock
 from evoframe.registry.observers import Observers
-from evoframe.registry.registry import Skipped, Source
+from evoframe.contract.config import Source
+from evoframe.registry.registry import Skipped
 from evoframe.runs.doctor import Check, check_installation, check_run
-from evoframe.runs.execution import prepare
+from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]
 
@@ -53,8 +54,8 @@ def test_a_run_without_a_lock_file_gets_none(finished: Path, toy_plugins: Plugin
 
 
 def test_a_run_that_was_left_can_go_on(toy_config: Load, toy_plugins: Plugins, tmp_path: Path) -> None:
-    execution = prepare(toy_config(), tmp_path / "run")
-    assert not execution.play(Observers(toy_plugins.manager), stop=lambda: True)
+    execution = prepare(toy_config(), toy_plugins, tmp_path / "run")
+    assert not execution.play(stop=lambda: True).finished()
     checks = list(check_run(tmp_path / "run", toy_plugins))
     assert not problems(checks)
     assert f"saved up to 0 of 8; to go on: evoframe resume {tmp_path / 'run'}" in [c.finding for c in checks]
@@ -70,7 +71,7 @@ def test_a_run_that_was_killed_before_anything_was_saved_can_begin(
 
 
 def test_a_run_that_is_being_written_is_left_alone(finished: Path, toy_plugins: Plugins) -> None:
-    lock = locked(finished)
+    lock = acquire_lock(finished)
     try:
         with pytest.raises(InputError, match="is being written by another process"):
             list(check_run(finished, toy_plugins))
@@ -138,7 +139,7 @@ def test_other_versions_are_noted(
 def test_a_champion_that_scores_something_else_is_found(
     finished: Path, toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    score = load_run(finished).champion.score
+    score = load_run(finished).champion().score
     monkeypatch.setattr(toys.Value, "score", lambda *_: 0.125)
     found = problems(list(check_run(finished, toy_plugins)))
     assert found == {"champion": f"scored {score!r} in its run, but now scores 0.125"}

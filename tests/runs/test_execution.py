@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from recorded import assert_same_result, rows
 
 import evoframe.record.store
+from evoframe.files import writing
 from evoframe import (
     ConfigurationError,
     Design,
@@ -34,11 +35,12 @@ from evoframe import (
     load_run,
     run,
 )
-from evoframe.files.locks import locked
+from evoframe.files.locks import acquire_lock
 from evoframe.record.champion import design_from_json, design_to_json, read_champion
 from evoframe.registry.observers import Observers
-from evoframe.registry.registry import Plugins, Source
-from evoframe.runs.execution import prepare
+from evoframe.contract.config import Source
+from evoframe.registry.registry import Plugins
+from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]
 
@@ -62,37 +64,37 @@ class TestDirectory:
 
     def test_has_one_row_a_turn_an_individual_and_a_pair(self, toy_config: Load, tmp_path: Path) -> None:
         finished = run(toy_config(), out=tmp_path / "run")
-        assert len(finished.turns) == 2 + 8
-        assert len(finished.individuals) == (6 + 5) + 4 * (6 + 5)
-        assert len(finished.pairs) == 30 + 4 * 2 * (6 + 5)
-        assert [row["turn"] for row in finished.workload] == list(range(9))
+        assert len(finished.turns()) == 2 + 8
+        assert len(finished.individuals()) == (6 + 5) + 4 * (6 + 5)
+        assert len(finished.pairs()) == 30 + 4 * 2 * (6 + 5)
+        assert [row["turn"] for row in finished.workload()] == list(range(9))
         assert {row["part"] for row in finished.table("state")} == {"loop", "population/a", "population/b"}
 
     def test_the_recorded_fitness_follows_from_the_recorded_scores(
         self, toy_config: Load, tmp_path: Path
     ) -> None:
         finished = run(toy_config("run.generations=10"), out=tmp_path / "run")
-        for individual in finished.individuals:
+        for individual in finished.individuals():
             name, genome, turn = individual["population"], individual["genome_id"], individual["turn"]
-            scores = [p["score"] for p in finished.pairs if p["turn"] == turn and p[name] == genome]
+            scores = [p["score"] for p in finished.pairs() if p["turn"] == turn and p[name] == genome]
             assert individual["fitness"] == pytest.approx(statistics.fmean(scores), rel=1e-12)
 
     def test_the_champion_is_the_best_pair_of_the_database(self, toy_config: Load, tmp_path: Path) -> None:
         finished = run(toy_config("run.generations=10"), out=tmp_path / "run")
-        best = max(pair["score"] for pair in finished.pairs)
-        assert finished.champion.score == best == finished.summary["best_pair_score"]
+        best = max(pair["score"] for pair in finished.pairs())
+        assert finished.champion().score == best == finished.summary()["best_pair_score"]
         assert finished.table("best_pairs")[-1]["score"] == best
-        roles = finished.champion.design.roles
+        roles = finished.champion().design.roles
         assert roles["a"][0] * roles["b"][0] == best
 
     def test_the_summary_names_the_fittest_and_their_displacement(
         self, toy_config: Load, tmp_path: Path
     ) -> None:
         finished = run(toy_config(), out=tmp_path / "run")
-        last = {row["population"]: row for row in finished.turns}
-        for name, fittest in finished.summary["fittest"].items():
+        last = {row["population"]: row for row in finished.turns()}
+        for name, fittest in finished.summary()["fittest"].items():
             assert fittest["fitness"] == last[name]["best"]
-        assert finished.summary["turns"] == 8
+        assert finished.summary()["turns"] == 8
 
     def test_the_champion_file_has_nothing_of_this_machine(self, toy_config: Load, tmp_path: Path) -> None:
         finished = run(toy_config(), out=tmp_path / "a-name-to-find")
@@ -127,23 +129,23 @@ class TestDirectory:
             finished = list(pool.map(lambda _: run(config), range(8)))
         names = sorted(str(one.directory) for one in finished)
         assert names == sorted(["runs/toy-3", *(f"runs/toy-3-{number}" for number in range(2, 9))])
-        assert all(one.pairs == finished[0].pairs for one in finished)
+        assert all(one.pairs() == finished[0].pairs() for one in finished)
 
     def test_belongs_to_one_run(self, toy_config: Load, tmp_path: Path) -> None:
-        first = prepare(toy_config(), tmp_path / "run")
+        first = prepare(toy_config(), Plugins(), tmp_path / "run")
         with pytest.raises(InputError, match="is not empty"):
-            prepare(toy_config(), tmp_path / "run")
+            prepare(toy_config(), Plugins(), tmp_path / "run")
         with pytest.raises(InputError, match="is being written by another process"):
-            locked(tmp_path / "run")
-        assert first.play(Observers(first.config.discovered.manager))
+            acquire_lock(tmp_path / "run")
+        assert first.play().finished()
 
     def test_that_is_lost_in_the_middle_ends_the_run_in_a_sentence(
         self, toy_config: Load, tmp_path: Path
     ) -> None:
-        execution = prepare(toy_config(), tmp_path / "run")
+        execution = prepare(toy_config(), Plugins(), tmp_path / "run")
         shutil.rmtree(tmp_path / "run")
         with pytest.raises(RunError, match=r"champion\.json: cannot be written: No such file"):
-            execution.play(Observers(execution.config.discovered.manager))
+            execution.play()
 
 
 def test_a_directory_is_made_only_when_all_components_have_started(
@@ -167,7 +169,7 @@ def test_workers_are_let_go(toy_config: Load, tmp_path: Path) -> None:
 def test_a_kill_between_database_and_champion_file_loses_no_champion(
     toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    write = evoframe.record.store.write_json
+    write = writing.write_json
     written: list[None] = []
 
     def killed(path: Path, document: Any) -> None:
@@ -181,8 +183,8 @@ def test_a_kill_between_database_and_champion_file_loses_no_champion(
     with pytest.raises(SystemExit):
         run(toy_config(), out=tmp_path / "run")
     killed_run = load_run(tmp_path / "run")
-    assert killed_run.champion.score == max(pair["score"] for pair in killed_run.pairs)
-    assert killed_run.champion.score > read_champion(tmp_path / "run" / "champion.json")[2]
+    assert killed_run.champion().score == max(pair["score"] for pair in killed_run.pairs())
+    assert killed_run.champion().score > read_champion(tmp_path / "run" / "champion.json").score
 
 
 class TestPython:
@@ -212,7 +214,7 @@ class TestPython:
         assert finished.config["simulator"]["limit"] == 2.5
 
     def test_a_complete_configuration_takes_no_settings(self, toy_config: Load) -> None:
-        with pytest.raises(TypeError, match="give settings and plugins to load_config"):
+        with pytest.raises(TypeError, match="give settings to load_config"):
             run(toy_config(), seed=4)
 
     def test_what_is_no_run_is_refused(self, tmp_path: Path) -> None:
@@ -257,7 +259,7 @@ class TestObservers:
             evoframe_run_started=started, evoframe_turn_finished=turned, evoframe_run_finished=finished
         )
         toy_plugins.add(observer, Source("watcher", "1.0", "watch"))
-        run(toy_config(), out=tmp_path / "run")
+        run(toy_config(), out=tmp_path / "run", plugins=toy_plugins)
         assert told == ["started", *[(index, index + 1) for index in range(9)], True]
 
     @pytest.mark.parametrize("hook", ["run_started", "turn_finished", "run_finished"])
@@ -271,8 +273,8 @@ class TestObservers:
 
         toy_plugins.add(plugin(**{f"evoframe_{hook}": told}), Source("watcher", "1.0", "watch"))
         with pytest.warns(PluginWarning, match="observer 'watcher:watch' is disabled: OSError: no disk"):
-            disturbed = run(toy_config(), out=tmp_path / "disturbed")
-        assert disturbed.pairs == undisturbed.pairs
+            disturbed = run(toy_config(), out=tmp_path / "disturbed", plugins=toy_plugins)
+        assert disturbed.pairs() == undisturbed.pairs()
 
 
 def test_a_run_that_is_stopped_keeps_all_turns_and_says_that_it_is_not_complete(
@@ -284,11 +286,11 @@ def test_a_run_that_is_stopped_keeps_all_turns_and_says_that_it_is_not_complete(
         asked.append(None)
         return len(asked) == 4
 
-    execution = prepare(toy_config(), tmp_path / "run")
-    assert not execution.play(Observers(execution.config.discovered.manager), stop)
+    execution = prepare(toy_config(), Plugins(), tmp_path / "run")
+    assert not execution.play(stop).finished()
     stopped = load_run(tmp_path / "run")
-    assert max(row["turn"] for row in stopped.turns) == 3
-    assert stopped.summary == {}
+    assert max(row["turn"] for row in stopped.turns()) == 3
+    assert stopped.summary() == {}
 
 
 def test_a_turn_and_its_state_are_saved_both_or_neither(
@@ -305,9 +307,9 @@ def test_a_turn_and_its_state_are_saved_both_or_neither(
     with pytest.raises(RunError, match=r"'toy-drift' \(plugin .*\): its state .*turn 3"):
         run(toy_config(), out=tmp_path / "run")
     saved = load_run(tmp_path / "run")
-    last = max(row["turn"] for row in saved.turns)
+    last = max(row["turn"] for row in saved.turns())
     assert max(row["turn"] for row in saved.table("state")) == last
-    assert max(row["turn"] for row in saved.pairs) == last == 2
+    assert max(row["turn"] for row in saved.pairs()) == last == 2
 
 
 class TestChampionFile:
@@ -316,12 +318,13 @@ class TestChampionFile:
         return run(toy_config(), out=tmp_path / "run").directory / "champion.json"
 
     def test_is_read_back_exactly(self, champion: Path) -> None:
-        design, simulation, score = read_champion(champion)
-        assert simulation == {
+        found = read_champion(champion)
+        design = found.design
+        assert found.simulation == {
             "simulator": {"name": "toy-product", "limit": 1e9},
             "objective": {"name": "toy-value"},
         }
-        assert design.roles["a"][0] * design.roles["b"][0] == score
+        assert design.roles["a"][0] * design.roles["b"][0] == found.score
         again = design_from_json(design_to_json(design))
         assert all((again.roles[role] == array).all() for role, array in design.roles.items())
 

@@ -10,7 +10,7 @@ from recorded import assert_same_result
 
 import evoframe_executors
 from evoframe import Plugins, RunConfig, RunError, load_run, resume, run
-from evoframe.registry.registry import Source
+from evoframe.contract.config import Source
 
 THREADS = "executor={name='threads', workers=2, batch_time_limit=0.5}"
 PROCESSES = "executor={name='processes', workers=2, batch_time_limit=5.0}"
@@ -50,7 +50,7 @@ def test_the_run_stops_and_goes_on_when_it_is_mended(
     expected = undisturbed(hanging, tmp_path)
     with pytest.raises(RunError, match=ERROR.format(limit)):
         run(hanging(executor), out=tmp_path / "run")
-    assert load_run(tmp_path / "run").last_turn is not None
+    assert load_run(tmp_path / "run").last_turn() is not None
     (tmp_path / "mended").touch()
     resume(tmp_path / "run", plugins=toy_plugins)
     assert_same_result(expected, tmp_path / "run")

@@ -14,6 +14,7 @@ import toys
 from recorded import assert_same_result
 
 from evoframe import Member, Outcome, Plugins, RunConfig, RunError, load_run, resume, run
+from evoframe.messages import full_text
 from evoframe.errors import ComponentError
 
 Load = Callable[..., RunConfig]
@@ -116,7 +117,7 @@ def test_is_named_with_all_that_is_known(
     with pytest.raises(RunError, match=message) as caught:
         run(toy_config(), out=tmp_path / "run")
     assert "of toy-box 1.0" in str(caught.value)
-    assert f"evoframe resume {tmp_path / 'run'}" in str(caught.value)
+    assert f"evoframe resume {tmp_path / 'run'}" in full_text(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -148,7 +149,7 @@ def test_a_run_goes_on_when_the_plugin_is_mended(
         patch.setattr(component, method, failing_later)
         with pytest.raises(RunError, match="ZeroDivisionError: oops"):
             run(toy_config(), out=tmp_path / "run")
-    assert load_run(tmp_path / "run").last_turn is not None
+    assert load_run(tmp_path / "run").last_turn() is not None
     resume(tmp_path / "run", plugins=toy_plugins)
     assert_same_result(undisturbed.directory, tmp_path / "run")
 
@@ -157,7 +158,7 @@ def test_numbers_of_numpy_are_numbers(
     toy_config: Load, toy_plugins: Plugins, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     undisturbed = run(toy_config("simulator={name='toy-product', limit=0.1}"), out=tmp_path / "undisturbed")
-    assert any(pair["diverged_at"] == 1 for pair in undisturbed.pairs)
+    assert any(pair["diverged_at"] == 1 for pair in undisturbed.pairs())
     working = toys.Product._outcome, toys.DriftRun.members
 
     def numpys_outcome(self: toys.Product, design: Any) -> Outcome:
@@ -189,7 +190,6 @@ def test_an_executor_that_loses_results_is_named(
 
 
 def test_passes_between_processes_with_all_that_it_says() -> None:
-    error = ComponentError("simulator", "failed", "a 1 with b 2")
-    error.keys = (b"key",)
+    error = ComponentError("simulator", "failed", "a 1 with b 2", keys=(b"key",))
     copied = pickle.loads(pickle.dumps(error))  # noqa: S301 - our own
     assert (str(copied), copied.keys) == ("simulator: failed (a 1 with b 2)", (b"key",))

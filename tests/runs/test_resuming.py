@@ -12,19 +12,18 @@ import pytest
 import toys
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from opening import configuration_of, has_begun, reopened
 from recorded import assert_same_result, rewritten, rows
 
 import evoframe.record.provenance
 from evoframe import ConfigurationError, InputError, Plugins, RunConfig, RunError, load_run, resume, run
-from evoframe.files.locks import locked
+from evoframe.files.locks import acquire_lock
 from evoframe.record.checksums import Checksums
-from evoframe.record.provenance import differences
-from evoframe.record.run import has_begun
+from evoframe.documents.trees import differences
 from evoframe.record.store import Store
 from evoframe.registry.observers import Observers
-from evoframe.registry.registry import Source
-from evoframe.runs.execution import prepare
-from evoframe.runs.resuming import configuration_of, reopen
+from evoframe.contract.config import Source
+from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]
 
@@ -36,8 +35,8 @@ def stop_after(turns: int) -> Callable[[], bool]:
 
 def stopped(config: RunConfig, directory: Path, after: int) -> Path:
     """Leave a run after so many turns."""
-    execution = prepare(config, directory)
-    assert not execution.play(Observers(config.discovered.manager), stop_after(after))
+    execution = prepare(config, Plugins(), directory)
+    assert not execution.play(stop_after(after)).finished()
     return directory
 
 
@@ -53,10 +52,10 @@ def test_ends_as_if_it_had_never_been_left(
     undisturbed = run(toy_config(), out=tmp_path / "undisturbed")
     resumed = resume(stopped(toy_config(), tmp_path / "left", turn), plugins=toy_plugins)
     assert_same_result(undisturbed.directory, resumed.directory)
-    assert [(row["turn"], row["pairs"]) for row in resumed.workload] == [
-        (row["turn"], row["pairs"]) for row in undisturbed.workload
+    assert [(row["turn"], row["pairs"]) for row in resumed.workload()] == [
+        (row["turn"], row["pairs"]) for row in undisturbed.workload()
     ]
-    assert [(row["number"], row["after_turn"], row["differences"]) for row in resumed.resumes] == [
+    assert [(row["number"], row["after_turn"], row["differences"]) for row in resumed.resumes()] == [
         (0, turn - 1, "[]")
     ]
 
@@ -69,7 +68,7 @@ def test_a_run_of_the_paper_goes_on_with_other_workers(tmp_path: Path) -> None:
     )
     resumed = resume(stopped(config, tmp_path / "left", 5), workers=3)
     assert_same_result(undisturbed.directory, resumed.directory)
-    assert resumed.verification is not None
+    assert resumed.verification() is not None
 
 
 def test_what_a_kill_left_beside_the_database_is_mended(
@@ -102,14 +101,14 @@ def test_a_finished_run_whose_champion_is_missing_gets_it_again(
     finished = run(toy_config(), out=tmp_path / "run")
     champion = (tmp_path / "run" / "champion.json").read_bytes()
     (tmp_path / "run" / "champion.json").unlink()
-    assert resume(tmp_path / "run", plugins=toy_plugins).summary == finished.summary
+    assert resume(tmp_path / "run", plugins=toy_plugins).summary() == finished.summary()
     assert (tmp_path / "run" / "champion.json").read_bytes() == champion
 
 
 def test_a_finished_run_stays_as_it_is(toy_config: Load, toy_plugins: Plugins, tmp_path: Path) -> None:
     finished = run(toy_config(), out=tmp_path / "run")
     before = (finished.directory / "run.db").read_bytes()
-    assert resume(finished.directory, plugins=toy_plugins).summary == finished.summary
+    assert resume(finished.directory, plugins=toy_plugins).summary() == finished.summary()
     assert (finished.directory / "run.db").read_bytes() == before
 
 
@@ -124,9 +123,9 @@ def test_a_run_whose_last_turn_is_saved_but_not_its_end_is_ended(
         patch.setattr(Store, "finish", killed)
         with pytest.raises(SystemExit):
             run(toy_config(), out=tmp_path / "left")
-    assert not load_run(tmp_path / "left").finished
+    assert not load_run(tmp_path / "left").finished()
     resumed = resume(tmp_path / "left", plugins=toy_plugins)
-    assert resumed.finished
+    assert resumed.finished()
     assert_same_result(undisturbed.directory, resumed.directory)
 
 
@@ -156,7 +155,7 @@ class TestRefusal:
             caught.value
         )
         resumed = resume(left, plugins=newer, allow_different_versions=True)
-        noted = json.loads(resumed.resumes[-1]["differences"])
+        noted = json.loads(resumed.resumes()[-1]["differences"])
         assert "evoframe: '0.1.0' then, '99' now" in noted
 
     def test_of_a_configuration_that_reads_other_files(self, left: Path, toy_plugins: Plugins) -> None:
@@ -170,8 +169,8 @@ class TestRefusal:
             if not begun:
                 (left / "run.db").unlink()
             with pytest.raises(ConfigurationError, match=r"not that of the run:\n  run\.seed: 3 then, 9 now"):
-                reopen(left, ["run.seed=9"], toy_plugins)
-        assert resume(left, plugins=toy_plugins).finished
+                reopened(left, toy_plugins, ["run.seed=9"])
+        assert resume(left, plugins=toy_plugins).finished()
 
     def test_of_other_settings_for_the_verification_of_a_finished_run(
         self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
@@ -182,11 +181,11 @@ class TestRefusal:
             configuration_of(directory, ["simulator.gain=2.0"], toy_plugins)
 
     def test_of_a_second_process(self, left: Path, toy_plugins: Plugins) -> None:
-        lock = locked(left)
+        lock = acquire_lock(left)
         with pytest.raises(InputError, match="is being written by another process"):
             resume(left, plugins=toy_plugins)
         lock.release()
-        assert resume(left, plugins=toy_plugins).finished
+        assert resume(left, plugins=toy_plugins).finished()
 
     def test_gives_the_lock_back(self, left: Path, toy_plugins: Plugins) -> None:
         text = (left / "config.toml").read_text()
@@ -194,13 +193,13 @@ class TestRefusal:
         with pytest.raises(ConfigurationError):
             resume(left, plugins=toy_plugins)
         (left / "config.toml").write_text(text)
-        assert resume(left, plugins=toy_plugins).finished
+        assert resume(left, plugins=toy_plugins).finished()
 
     @pytest.mark.parametrize("state", ["{}", "[]", "null", '{"values": 3}', '{"evolver": {}}'])
     def test_of_a_state_that_is_none(self, left: Path, toy_plugins: Plugins, state: str) -> None:
         rewritten(left, "UPDATE state SET state = ? WHERE part = 'population/a'", state)
         with pytest.raises(InputError, match="the state cannot be restored"):
-            reopen(left, plugins=toy_plugins)
+            reopened(left, toy_plugins)
 
     def test_run_says_what_a_directory_holds(
         self, toy_config: Load, toy_plugins: Plugins, left: Path
@@ -218,12 +217,12 @@ class TestDisk:
     ) -> None:
         undisturbed = run(toy_config(), out=tmp_path / "undisturbed")
         config = toy_config()
-        execution = prepare(config, tmp_path / "left")
+        execution = prepare(config, Plugins(), tmp_path / "left")
         execution._store._database.execute("PRAGMA busy_timeout = 10")
         holder = sqlite3.connect(tmp_path / "left" / "run.db", isolation_level=None)
         holder.execute("BEGIN IMMEDIATE")
         with pytest.raises(RunError, match="the database cannot be written: database is locked"):
-            execution.play(Observers(config.discovered.manager))
+            execution.play()
         holder.close()
         assert_same_result(undisturbed.directory, resume(tmp_path / "left", plugins=toy_plugins).directory)
 
@@ -277,16 +276,17 @@ def test_a_checksum_does_not_depend_on_how_rows_arrive(given_rows: list[list[obj
 def test_a_resume_is_noted_only_beside_the_results(left: Path, toy_plugins: Plugins) -> None:
     resume(left, plugins=toy_plugins)
     assert rows(left, "resumes") == [(0, 3, "[]")]
-    assert load_run(left).finished
+    assert load_run(left).finished()
 
 
 def test_a_run_that_was_finished_a_moment_ago_is_not_resumed(left: Path, toy_plugins: Plugins) -> None:
     resume(left, plugins=toy_plugins)
     before = {path.name: path.read_bytes() for path in left.iterdir() if path.suffix in (".json", ".toml")}
-    execution = reopen(left, plugins=toy_plugins)  # by a process that saw it before
-    assert execution.play(Observers(toy_plugins.manager))
-    execution.verify()
+    execution = reopened(left, toy_plugins)  # by a process that saw it before
+    finished = execution.play()
+    assert finished.finished()
+    execution.verify(finished)
     assert rows(left, "resumes") == [(0, 3, "[]")]
     after = {path.name: path.read_bytes() for path in left.iterdir() if path.suffix in (".json", ".toml")}
     assert after == before
-    assert load_run(left).finished
+    assert load_run(left).finished()

@@ -31,8 +31,9 @@ from evoframe import (
 )
 from evoframe.record import store
 from evoframe.registry.observers import Observers
-from evoframe.registry.registry import Plugins, Source
-from evoframe.runs.execution import prepare
+from evoframe.contract.config import Source
+from evoframe.registry.registry import Plugins
+from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]
 
@@ -54,7 +55,7 @@ class TestExportedChampion:
             "champion.json", "champion.toy", "champion.txt", "config.toml",
             "run.db", "run.lock", "verification.json",
         ]  # fmt: skip
-        roles = finished.champion.design.roles
+        roles = finished.champion().design.roles
         assert toy_design(finished.directory) == {role: array[0] for role, array in roles.items()}
 
     def test_is_as_new_as_the_other_after_every_turn(
@@ -66,11 +67,11 @@ class TestExportedChampion:
         def stop() -> bool:
             exported = toy_design(tmp_path / "run")
             asked.append(exported["a"] * exported["b"])
-            assert asked[-1] == load_run(tmp_path / "run").champion.score
+            assert asked[-1] == load_run(tmp_path / "run").champion().score
             return False
 
         config = toy_config("simulator=toy-varied")
-        prepare(config, tmp_path / "run").play(Observers(config.discovered.manager), stop)
+        prepare(config, Plugins(), tmp_path / "run").play(stop)
         assert len(set(asked)) > 2
 
     def test_is_the_same_for_the_same_run(self, finished: Run, toy_config: Load, tmp_path: Path) -> None:
@@ -115,7 +116,7 @@ class TestExportedChampion:
 
         monkeypatch.setattr(toys.Varied, "export", failing)
         finished = run(toy_config("simulator=toy-varied"), out=tmp_path / "run")
-        assert finished.finished
+        assert finished.finished()
         assert "there is no toy file of the champion: ZeroDivisionError: oops" in caplog.text
 
     def test_says_in_the_log_what_it_leaves_out(
@@ -128,19 +129,19 @@ class TestExportedChampion:
 
 class TestVerification:
     def test_is_made_at_the_end_of_a_run_and_read_back(self, finished: Run) -> None:
-        verification = finished.verification
+        verification = finished.verification()
         assert isinstance(verification, Verification)
-        assert verification.score == finished.champion.score == verification.unchanged.value
+        assert verification.score == finished.champion().score == verification.unchanged.value
         assert [finding.name for finding in verification.findings] == [
             "gain off", "no room", "one number jittered by 10 %",
         ]  # fmt: skip
 
     def test_is_no_part_of_the_work_that_is_recorded(self, finished: Run, toy_config: Load) -> None:
         plain = run(toy_config(), out=finished.directory.with_name("plain"))
-        assert [(row["pairs"], row["simulations"]) for row in finished.workload] == [
-            (row["pairs"], row["simulations"]) for row in plain.workload
+        assert [(row["pairs"], row["simulations"]) for row in finished.workload()] == [
+            (row["pairs"], row["simulations"]) for row in plain.workload()
         ]
-        assert finished.pairs == plain.pairs
+        assert finished.pairs() == plain.pairs()
 
     def test_lets_its_workers_go(self, toy_config: Load, tmp_path: Path) -> None:
         before = len(toys.CLOSED)
@@ -153,17 +154,17 @@ class TestVerification:
         before = written(finished.directory)
         toy_plugins.add(evoframe_executors, Source("evoframe", "1", "executors"))
         [again] = verify(finished, plugins=toy_plugins, executor="threads", workers=3)
-        assert again == finished.verification
+        assert again == finished.verification()
         assert written(finished.directory) == before
 
     def test_is_not_made_where_there_are_no_variants(self, toy_config: Load, tmp_path: Path) -> None:
         plain = run(toy_config(), out=tmp_path / "run")
-        assert plain.verification is None
+        assert plain.verification() is None
 
     def test_is_not_made_of_a_run_that_was_stopped(self, toy_config: Load, tmp_path: Path) -> None:
         config = toy_config("simulator=toy-varied")
-        prepare(config, tmp_path / "run").play(Observers(config.discovered.manager), lambda: True)
-        assert load_run(tmp_path / "run").verification is None
+        prepare(config, Plugins(), tmp_path / "run").play(lambda: True)
+        assert load_run(tmp_path / "run").verification() is None
 
     @pytest.mark.parametrize(
         ("damage", "message"),
@@ -181,20 +182,20 @@ class TestVerification:
         path = finished.directory / "verification.json"
         path.write_text(damage(path.read_text()))
         with pytest.raises(InputError, match=rf"verification\.json: .*{message}.*: evoframe verify .*run"):
-            _ = finished.verification
+            _ = finished.verification()
 
     def test_of_another_champion_is_refused(self, finished: Run, toy_config: Load, tmp_path: Path) -> None:
         other = run(toy_config("simulator=toy-varied", "run.seed=9"), out=tmp_path / "other")
         shutil.copy(other.directory / "verification.json", finished.directory)
         with pytest.raises(InputError, match=r"verification\.json: is about another champion; to make it"):
-            _ = finished.verification
+            _ = finished.verification()
 
     def test_that_cannot_be_read_is_said(self, finished: Run) -> None:
         path = finished.directory / "verification.json"
         path.unlink()
         path.mkdir()
         with pytest.raises(InputError, match=r"verification\.json: cannot be read: Is a directory"):
-            _ = finished.verification
+            _ = finished.verification()
 
 
 class TestFailingVerification:
@@ -213,9 +214,9 @@ class TestFailingVerification:
         with pytest.raises(RunError, match=message):
             run(toy_config("simulator=toy-varied"), out=tmp_path / "run")
         finished = load_run(tmp_path / "run")
-        assert finished.summary["turns"] == 8
-        assert finished.champion.score == finished.summary["best_pair_score"]
-        assert finished.verification is None
+        assert finished.summary()["turns"] == 8
+        assert finished.champion().score == finished.summary()["best_pair_score"]
+        assert finished.verification() is None
 
     def test_comes_after_everything_else(
         self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -223,7 +224,7 @@ class TestFailingVerification:
         told: list[Any] = []
 
         def ended(completed: bool) -> None:
-            told.append((completed, load_run(tmp_path / "run").summary["turns"]))
+            told.append((completed, load_run(tmp_path / "run").summary()["turns"]))
 
         toy_plugins.add(plugin(evoframe_run_finished=ended), Source("watcher", "1.0", "watch"))
 
@@ -233,7 +234,7 @@ class TestFailingVerification:
 
         monkeypatch.setattr(toys.Varied, "variants", fails)
         with pytest.raises(RunError, match="ZeroDivisionError"):
-            run(toy_config("simulator=toy-varied"), out=tmp_path / "run")
+            run(toy_config("simulator=toy-varied"), out=tmp_path / "run", plugins=toy_plugins)
         assert told == [(True, 8), "verifying"]
 
 
@@ -244,13 +245,13 @@ class TestPython:
         path.unlink()
         for source in (finished, finished.directory, str(finished.directory)):
             [verification] = verify(source, plugins=toy_plugins)
-            assert verification == finished.verification
+            assert verification == finished.verification()
             assert path.read_bytes() == before
 
     def test_with_other_settings_nothing_is_kept(self, finished: Run, toy_plugins: Plugins) -> None:
         before = written(finished.directory)
         [verification] = verify(finished, plugins=toy_plugins, simulator={"gain": 3})
-        assert verification.unchanged.value == pytest.approx(3 * finished.champion.score)
+        assert verification.unchanged.value == pytest.approx(3 * finished.champion().score)
         assert verification.score is None
         assert written(finished.directory) == before
 

@@ -20,7 +20,7 @@ def test_that_of_finished_runs_goes_with_the_pairs(made: tuple[Study, Path, list
     assert missing[0].cell.pairs > finished[0].cell.pairs
     ratio = sum(run.cell.pairs for run in missing) / sum(run.cell.pairs for run in finished)
     found = estimated(missing, finished)
-    seconds = sum(row["seconds"] for run in finished for row in load_run(run.directory).workload)
+    seconds = sum(row["seconds"] for run in finished for row in load_run(run.directory).workload())
     size = sum(path.stat().st_size for run in finished for path in run.directory.iterdir())
     assert found.seconds == pytest.approx(seconds * ratio)
     assert found.megabytes == pytest.approx(size * ratio / 1e6)

@@ -67,7 +67,7 @@ class TestCells:
         for cell in toy_study().cells:
             made = run(cell.config, out=tmp_path / cell.folder)
             turns = cell.config.run.generations * len(cell.config.populations)
-            assert cell.pairs == sum(row["pairs"] for row in made.workload if row["turn"] <= turns)
+            assert cell.pairs == sum(row["pairs"] for row in made.workload() if row["turn"] <= turns)
 
     @pytest.mark.parametrize("sizes", [(2, 2, 3), (3, 2, 2), (2, 4, 3)])
     def test_of_three_populations_count_their_pairs_too(
@@ -84,8 +84,8 @@ class TestCells:
         text = tomli_w.dumps({"populations": populations})
         [cell] = toy_study("runs=1", text=f"{THREE}\n{text}").cells
         made = run(cell.config, out=tmp_path / "run")
-        assert made.workload[0]["pairs"] == len(first_meetings(sizes))
-        assert cell.pairs == sum(row["pairs"] for row in made.workload if row["turn"] <= 12)
+        assert made.workload()[0]["pairs"] == len(first_meetings(sizes))
+        assert cell.pairs == sum(row["pairs"] for row in made.workload() if row["turn"] <= 12)
 
 
 class TestOrder:

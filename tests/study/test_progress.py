@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from evoframe.files.locks import held
-from evoframe.record.verification import VERIFICATION_FILE
+from evoframe.files.locks import locked
+from evoframe.record.layout import VERIFICATION_FILE
 from evoframe.study.plan import Planned, Study
 from evoframe.study.progress import FAILURE_FILE, Status, forget_failure, note_failure, status
 
@@ -32,7 +32,7 @@ def test_the_first_cause_stays(made: Made) -> None:
 
 def test_no_failure_is_noted_of_a_run_at_which_another_process_is(made: Made) -> None:
     [planned, *_] = made[2]
-    with held(planned.directory):
+    with locked(planned.directory):
         note_failure(planned.directory, "a fault")
     assert status(planned).state == "finished"
 

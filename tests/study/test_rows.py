@@ -9,8 +9,7 @@ from pathlib import Path
 
 import attrs
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 from evoframe import InputError, load_run, run
 from evoframe.study.conduct import claim, survey
@@ -65,16 +64,17 @@ def kept(study: Study, directory: Path) -> list[Row]:
 
 def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]]) -> None:
     _, _, planned = made
-    finished, row = load_run(planned[3].directory), row_of(planned[3])
+    finished = load_run(planned[3].directory)
+    row = row_of(planned[3], finished)
     assert row.settings == {"collaboration.n": "2", "simulator": '{"gain": 2.0, "name": "toy-varied"}'}
-    assert (row.seed, row.score) == (planned[3].seed, finished.champion.score)
+    assert (row.seed, row.score) == (planned[3].seed, finished.champion().score)
     assert row.champion == hashlib.sha256((finished.directory / "champion.json").read_bytes()).hexdigest()
-    assert row.pairs == sum(work["pairs"] for work in finished.workload)
-    last = [turn["best"] for turn in finished.turns if turn["generation"] == 4]
+    assert row.pairs == sum(work["pairs"] for work in finished.workload())
+    last = [turn["best"] for turn in finished.turns() if turn["generation"] == 4]
     assert row.fitness == row.fitness_curve[-1] == max(last)
     assert len(row.fitness_curve) == len(row.score_curve) == 5
     assert list(row.score_curve) == sorted(row.score_curve)
-    assert row.score_curve[0] == max(pair["score"] for pair in finished.pairs if pair["turn"] == 0)
+    assert row.score_curve[0] == max(pair["score"] for pair in finished.pairs() if pair["turn"] == 0)
 
 
 def test_rows_of_elsewhere_count_as_finished(
@@ -153,7 +153,7 @@ def test_rows_of_cells_that_are_not_asked_for_now_are_kept(
     import_rows(study, there, [directory / "rows.csv"])
     fewer = toy_study("runs=1", "grid.collaboration.n=[2]")
     assert [run.index for run in imported_rows(fewer, there)] == [0, 0]
-    write_rows([row_of(planned[2])], tmp_path / "rows.csv")
+    write_rows([row_of(planned[2], load_run(planned[2].directory))], tmp_path / "rows.csv")
     import_rows(fewer, there, [tmp_path / "rows.csv"])
     assert len(imported_rows(study, there)) == 4
 

@@ -14,10 +14,10 @@ import evoframe
 from evoframe import InputError, Plugins, RunConfig, assemble, load_run
 from evoframe.config.resolve import resolved
 from evoframe.errors import LockedError
-from evoframe.files.locks import held
-from evoframe.record.verification import VERIFICATION_FILE
-from evoframe.registry.observers import Observers
-from evoframe.runs.execution import Execution, prepare
+from evoframe.files.locks import locked
+from evoframe.record.layout import VERIFICATION_FILE
+from evoframe.runs.execution import Execution
+from evoframe.runs.starting import prepare
 from evoframe.study import worker
 from evoframe.study.plan import Planned, Study
 from evoframe.study.worker import Order, Talk, _Teller, perform
@@ -43,9 +43,9 @@ def order(planned: tuple[Study, Planned], toy_plugins: Plugins, monkeypatch: pyt
 def meanwhile(monkeypatch: pytest.MonkeyPatch, first: Callable[[RunConfig, Path], object]) -> None:
     """Let something happen after it was seen that a run has not begun."""
 
-    def prepared(config: RunConfig, out: Path) -> Execution:
+    def prepared(config: RunConfig, plugins: Plugins, out: Path) -> Execution:
         first(config, out)
-        return prepare(config, out)
+        return prepare(config, plugins, out)
 
     monkeypatch.setattr(worker, "prepare", prepared)
 
@@ -65,25 +65,25 @@ def test_a_run_that_another_process_has_made_meanwhile_is_finished(
 
     meanwhile(monkeypatch, make)
     assert perform(order, SILENT)
-    assert load_run(order.directory).resumes == []
+    assert load_run(order.directory).resumes() == []
 
 
 def test_a_run_that_another_process_has_begun_meanwhile_is_left_to_it(
     order: Order, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     others: list[Any] = []
-    meanwhile(monkeypatch, lambda config, out: others.append(prepare(config, out)))
+    meanwhile(monkeypatch, lambda config, out: others.append(prepare(config, Plugins(), out)))
     with pytest.raises(LockedError):
         perform(order, SILENT)
-    others[0].play(Observers(others[0].config.discovered.manager))
-    assert load_run(order.directory).finished
+    others[0].play()
+    assert load_run(order.directory).finished()
 
 
 def test_a_run_whose_directory_another_process_has_just_locked_is_left_to_it(
     order: Order,
 ) -> None:
     order.directory.mkdir(parents=True)
-    with held(order.directory), pytest.raises(LockedError):
+    with locked(order.directory), pytest.raises(LockedError):
         perform(order, SILENT)
     assert perform(order, SILENT)
 
@@ -93,12 +93,12 @@ def test_a_finished_run_is_only_verified_and_only_once(order: Order) -> None:
     verification = order.directory / VERIFICATION_FILE
     made, database = verification.read_bytes(), (order.directory / "run.db").read_bytes()
     verification.unlink()
-    with held(order.directory), pytest.raises(LockedError):  # somebody verifies it just now
+    with locked(order.directory), pytest.raises(LockedError):  # somebody verifies it just now
         perform(order, SILENT)
     assert perform(order, SILENT)
     assert verification.read_bytes() == made
     assert (order.directory / "run.db").read_bytes() == database
-    with held(order.directory):
+    with locked(order.directory):
         assert perform(order, SILENT)
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import toys
 
-from evoframe.registry.registry import Plugins, Source
+from evoframe.contract.config import Source
+from evoframe.registry.registry import Plugins
 
 
 def installed() -> Plugins:

@@ -25,13 +25,11 @@ from typing import Any
 
 import evoframe.record.store
 from evoframe import Turn, hookimpl, load_config, load_run
-from evoframe.record.run import has_begun
 from evoframe.registry.discovery import discover
-from evoframe.registry.observers import Observers
-from evoframe.runs.execution import prepare
-from evoframe.runs.resuming import is_finished, reopen
+from evoframe.runs.starting import prepare
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
+from opening import has_begun, is_finished, reopened
 from recorded import assert_same_result, rows
 
 GENERATIONS = 40
@@ -56,10 +54,10 @@ def play(directory: Path, seed: int, workers: int, pipe: int) -> None:
     plugins.manager.register(Reporter(pipe))
     overrides = [f"run.seed={seed}", f"run.generations={GENERATIONS}", f"executor.workers={workers}"]
     if (directory / "config.toml").exists():
-        execution = reopen(directory, plugins=plugins)
+        execution = reopened(directory, plugins)
     else:
-        execution = prepare(load_config("quick", overrides=overrides, plugins=plugins), directory)
-    execution.play(Observers(execution.config.discovered.manager))
+        execution = prepare(load_config("quick", overrides=overrides, plugins=plugins), plugins, directory)
+    execution.play()
 
 
 def dies_at(call: int) -> None:
@@ -166,7 +164,7 @@ def main() -> None:
                 counts[how] += 1
                 kills += how in ("inside", "outside")
             compare(directory, Path(base) / f"undisturbed-{seed}", seed)
-            turns += load_run(directory).summary["turns"]
+            turns += load_run(directory).summary()["turns"]
             most, seed = max(most, kills), seed + 1
     kills = counts["inside"] + counts["outside"]
     print(  # noqa: T201

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from opening import reopened
 from recorded import rewritten
 
-from evoframe import InputError, Run, load_run, run
+from evoframe import InputError, Plugins, Run, load_run, run
 from evoframe.record.checksums import CHAINED, SINGLE
-from evoframe.runs.resuming import reopen
 
 TRIALS = 200
 PAGE = 4096
@@ -24,16 +24,16 @@ def everything(directory: Path) -> list[Any]:
     """Return all that can be read of a run."""
     loaded = load_run(directory)
     tables = [loaded.table(name) for name in (*CHAINED, *SINGLE)]
-    champion = loaded.champion
+    champion = loaded.champion()
     roles = {role: array.tolist() for role, array in champion.design.roles.items()}
     return [
         tables,
-        loaded.summary,
-        loaded.state,
+        loaded.summary(),
+        loaded.state(),
         champion.score,
         champion.simulation,
         roles,
-        loaded.verification,
+        loaded.verification(),
     ]
 
 
@@ -118,13 +118,17 @@ def test_a_change_by_hand_is_named(intact: Run, tmp_path: Path, statement: str, 
         everything(tmp_path / "run")
 
 
+def reopen(directory: Path) -> None:
+    reopened(directory, Plugins())
+
+
 def test_what_is_damaged_is_not_resumed(intact: Run, tmp_path: Path) -> None:
     shutil.copytree(intact.directory, tmp_path / "run")
     with sqlite3.connect(tmp_path / "run" / "run.db") as database:
         database.execute("UPDATE pairs SET score = 1.0 WHERE turn = 3 AND pair = 1")
     database.close()
     with pytest.raises(InputError, match="is damaged: pairs"):
-        reopen(tmp_path / "run")
+        reopened(tmp_path / "run", Plugins())
 
 
 def test_a_table_without_an_end_is_not_read(intact: Run, tmp_path: Path) -> None:

@@ -12,14 +12,13 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
+from opening import is_finished, reopened
 
-from evoframe import EvoframeError, InputError, Run, load_config, load_run, run
+from evoframe import EvoframeError, InputError, Plugins, Run, load_config, load_run, run
 from evoframe.cli import cli
+from evoframe.evolution.assembly import assemble
 from evoframe.record.champion import read_champion
-from evoframe.runs.execution import assemble
-from evoframe.runs.resuming import is_finished, reopen
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +35,10 @@ def directory(finished: Run, tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     "name", ["run.lock", "run.db", "run.db-wal", "config.toml", "champion.json", ".champion.json.new", "x"]
 )
+def reopen(directory: Path) -> None:
+    reopened(directory, Plugins())
+
+
 @pytest.mark.parametrize("use", [load_run, is_finished, reopen])
 def test_links_are_not_followed(
     directory: Path, tmp_path: Path, name: str, use: Callable[[Path], object]

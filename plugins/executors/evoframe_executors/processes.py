@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future
-from concurrent.futures import TimeoutError as TookTooLong
+from concurrent.futures import FIRST_COMPLETED, Future, TimeoutError as TookTooLong
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any, Generic, TypeVar
 

@@ -6,18 +6,18 @@ import logging
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 import click
 from click.shell_completion import CompletionItem
 from rich.console import Console
 
-from evoframe.analysis.statistics.corrections import CORRECTIONS
-from evoframe.config.layers import Layer, layer_of, preset_names
 from evoframe.errors import InputError
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import Plugins
+
+if TYPE_CHECKING:
+    from evoframe.config.layers import Layer
+    from evoframe.registry.registry import Plugins
 
 __all__ = [
     "common_options",
@@ -140,6 +140,8 @@ def modules_of(ctx: click.Context) -> tuple[str, ...]:
 
 def plugins_of(ctx: click.Context) -> Plugins:
     """Return the plugins of this invocation, discovered once."""
+    from evoframe.registry.discovery import discover
+
     common = _common(ctx)
     if common.plugins is None:
         common.plugins = discover(common.modules)
@@ -147,6 +149,8 @@ def plugins_of(ctx: click.Context) -> Plugins:
 
 
 def _complete_preset(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    from evoframe.config.layers import preset_names
+
     presets = [CompletionItem(name) for name in preset_names() if name.startswith(incomplete)]
     return [*presets, CompletionItem(incomplete, type="file")]
 
@@ -182,6 +186,8 @@ def set_option(function: F) -> F:
 
 def correction_option(function: F) -> F:
     """Add ``--correction C`` to a command that compares pairs of groups."""
+    from evoframe.analysis.statistics.corrections import CORRECTIONS
+
     return click.option(
         "--correction",
         type=click.Choice(CORRECTIONS),
@@ -210,6 +216,8 @@ def needing_extra(extra: str, what: str) -> Iterator[None]:
 
 
 def _workers_layer(_: click.Context, __: click.Parameter, workers: int | None) -> list[Layer]:
+    from evoframe.config.layers import layer_of
+
     return [] if workers is None else [layer_of(f"--workers {workers}", "executor.workers", workers)]
 
 

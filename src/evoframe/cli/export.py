@@ -8,12 +8,12 @@ import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
 from evoframe.contract.config import Chosen
+from evoframe.contract.optional import SupportsExport
 from evoframe.contract.protocols import Simulator
-from evoframe.designs.exporting import export_design, formats_of
 from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import ConfigurationError, InputError, RunError
-from evoframe.record.store import write_atomically
-from evoframe.registry.registry import suggestion
+from evoframe.files.writing import write_atomically
+from evoframe.messages import suggestion
 
 __all__ = ["export"]
 
@@ -57,9 +57,9 @@ def export(
     job = read_job(source, preset, overrides, plugins_of(ctx), runs=True)
     if len(job.designs) != 1:
         raise InputError(f"{source}: holds {len(job.designs)} designs, but a file is written of one")
-    _check_format(job.config.simulator, format_)
+    simulator = _exporting(job.config.simulator, format_)
     with naming(source):
-        exported = export_design(job.config.simulator.component, job.designs[0], format_)
+        exported = simulator.export(job.designs[0], format_)
     for entry in exported.left_out:
         click.echo(f"Warning: left out: {entry}", err=True)
     path = _default_path(job, format_) if out is None else out
@@ -70,13 +70,15 @@ def export(
         click.echo(path)
 
 
-def _check_format(simulator: Chosen[Simulator], format_: str) -> None:
-    formats = formats_of(simulator.component)
-    if not formats:
+def _exporting(simulator: Chosen[Simulator], format_: str) -> SupportsExport:
+    """Return a simulator that writes a format, or refuse it."""
+    if not isinstance(simulator.component, SupportsExport):
         raise ConfigurationError(f"the simulator '{simulator.name}' writes no files of other programs")
+    formats = simulator.component.formats
     if format_ not in formats:
         hint = suggestion(format_, formats, "formats")
         raise ConfigurationError(f"the simulator '{simulator.name}' has no format '{format_}'{hint}")
+    return simulator.component
 
 
 def _default_path(job: Job, format_: str) -> Path:

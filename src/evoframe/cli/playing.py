@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
-from pathlib import Path
 
 import click
 from rich.table import Table
@@ -13,10 +13,8 @@ from evoframe.cli.progress import Progress
 from evoframe.cli.signals import exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
 from evoframe.contract.config import RunConfig
-from evoframe.contract.protocols import unit_of
-from evoframe.record.run import Run, load_run
-from evoframe.record.verification import can_verify
-from evoframe.registry.observers import Observers
+from evoframe.contract.optional import SupportsVariants, unit_of
+from evoframe.record.run import Run
 from evoframe.runs.execution import Execution, verify_champion
 
 __all__ = ["play", "show_end"]
@@ -24,29 +22,26 @@ __all__ = ["play", "show_end"]
 
 def play(ctx: click.Context, execution: Execution) -> None:
     """Run to the end, and show and verify what came of it; or stop where a signal demands it."""
-    manager = execution.config.discovered.manager
     if not is_quiet(ctx):
-        manager.register(Progress(), name="evoframe:progress")
-    with stop_on_signals("this turn") as stop:
-        try:
-            completed = execution.play(Observers(manager), stop.is_asked)
-        except KeyboardInterrupt:
-            completed = False
-    if not completed:
-        click.echo(_interrupted(load_run(execution.directory)), err=True)
+        execution.plugins.manager.register(Progress(), name="evoframe:progress")
+    run: Run | None = None
+    with stop_on_signals("this turn") as stop, contextlib.suppress(KeyboardInterrupt):
+        run = execution.play(stop.is_asked)
+    if run is None or not run.finished():
+        click.echo(_interrupted(execution), err=True)
         ctx.exit(stop.exit_code)
-    show_end(ctx, execution.config, execution.directory)
+    show_end(ctx, execution.config, run)
 
 
-def show_end(ctx: click.Context, config: RunConfig, directory: Path) -> None:
+def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
     """Show what came of a run that has come to its end, and verify its champion."""
-    quiet = is_quiet(ctx)
+    quiet, directory = is_quiet(ctx), run.directory
     if quiet:
         click.echo(directory)
     else:
-        output().print(_summary(load_run(directory), unit_of(config.objective.component)))
+        output().print(_summary(run, unit_of(config.objective.component)))
     try:
-        _verify(config, directory, quiet)
+        _verify(config, run, quiet)
     except KeyboardInterrupt:
         click.echo(
             f"Interrupted; the run is complete and saved in {directory}, but not verified; "
@@ -56,18 +51,18 @@ def show_end(ctx: click.Context, config: RunConfig, directory: Path) -> None:
         ctx.exit(exit_code(signal.SIGINT))
 
 
-def _verify(config: RunConfig, directory: Path, quiet: bool) -> None:
+def _verify(config: RunConfig, run: Run, quiet: bool) -> None:
     """Verify the champion, if that can be done, and show what came of it."""
-    if not quiet and can_verify(config.simulator.component):
+    if not quiet and isinstance(config.simulator.component, SupportsVariants):
         click.echo("verifying the champion", err=True)
-    verification = verify_champion(config, directory)
+    verification = verify_champion(config, run)
     if verification is not None and not quiet:
         console = output()
         console.print()
         console.print(verification_table(verification))
 
 
-def _interrupted(stopped: Run) -> str:
+def _interrupted(stopped: Execution) -> str:
     last, directory = stopped.last_turn, stopped.directory
     saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
     return f"Interrupted; {saved} in {directory}; to go on: evoframe resume {directory}"
@@ -77,9 +72,9 @@ def _summary(finished: Run, unit: str) -> Table:
     table = Table(box=None, show_header=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
-    result, work = finished.summary, finished.workload
+    result, work = finished.summary(), finished.workload()
     pairs, simulations = (sum(row[key] for row in work) for key in ("pairs", "simulations"))
-    diverged = sum(row["score"] is None for row in finished.pairs)
+    diverged = sum(row["score"] is None for row in finished.pairs())
     best = finished.table("best_pairs")[-1]
     table.add_row("best pair simulated", f"{scored(best['score'], unit)}, in turn {best['turn']}")
     for population, fittest in result["fittest"].items():

@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
+import importlib
+import importlib.metadata
 import signal
 import sys
 import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import click
 
 from evoframe._version import __version__
-from evoframe.cli.completion import completion
-from evoframe.cli.config import config
-from evoframe.cli.context import common_options, plugins_of
-from evoframe.cli.doctor import doctor
-from evoframe.cli.export import export
-from evoframe.cli.plugins import plugins
-from evoframe.cli.report import report
-from evoframe.cli.resume import resume
-from evoframe.cli.robustness import robustness
-from evoframe.cli.run import run
+from evoframe.cli.context import common_options, modules_of, plugins_of
 from evoframe.cli.signals import exit_code
-from evoframe.cli.simulate import simulate
-from evoframe.cli.study import study
-from evoframe.cli.verify import verify
 from evoframe.errors import EvoframeError, PluginWarning, RunError
-from evoframe.registry.observers import Observers
+from evoframe.messages import full_text
 
 __all__ = ["cli", "main"]
 
@@ -43,18 +34,46 @@ class _RunFailure(_Failure):
 
 
 def _failure(error: EvoframeError) -> _Failure:
-    return (_RunFailure if isinstance(error, RunError) else _Failure)(str(error))
+    return (_RunFailure if isinstance(error, RunError) else _Failure)(full_text(error))
+
+
+COMMANDS: Mapping[str, str] = {
+    "completion": "Print the script that completes commands, options and presets in a SHELL.",
+    "config": "Look at configurations.",
+    "doctor": "Look whether everything is in order: the installation, or the directories of runs.",
+    "export": "Write a design with its settings as a file of another program.",
+    "plugins": "Look at plugins.",
+    "report": "Write figures, tables, conclusions and a page of runs and studies, finished or not.",
+    "resume": "Go on with a run that was interrupted, from its last complete turn.",
+    "robustness": "Simulate bodies with the same random controllers, and compare what they score.",
+    "run": "Run a coevolution: a TOML file, or a preset (without argument: paper).",
+    "simulate": "Simulate given bodies and print the displacement of each.",
+    "study": "Run a grid of configurations, each several times; go on where that was left.",
+    "verify": (
+        "Simulate designs again with one thing changed at a time, and print what is left of their scores."
+    ),
+}
+"""Name of a built-in command, which is that of its module -> what it does, so that help loads no command."""
 
 
 class _Program(click.Group):
-    """A group that knows the commands of plugins too; built-in ones cannot be replaced."""
+    """A group that loads a command when it is called; plugins add some, and replace none."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted({*super().list_commands(ctx), *self._of_plugins(ctx).commands})
+        return sorted({*COMMANDS, *self._of_plugins(ctx).commands})
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        built_in = super().get_command(ctx, cmd_name)
-        return built_in or self._of_plugins(ctx).commands.get(cmd_name)
+        if cmd_name in COMMANDS:
+            command: click.Command = getattr(importlib.import_module(f"evoframe.cli.{cmd_name}"), cmd_name)
+            return command
+        return self._of_plugins(ctx).commands.get(cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        added = {
+            name: added.get_short_help_str(120) for name, added in self._of_plugins(ctx).commands.items()
+        }
+        with formatter.section("Commands"):
+            formatter.write_dl(sorted({**added, **COMMANDS}.items()))
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -67,11 +86,21 @@ class _Program(click.Group):
 
     def _of_plugins(self, ctx: click.Context) -> click.Group:
         group = click.Group("evoframe")
+        if not modules_of(ctx) and not _plugins_of_others():
+            return group  # the built-in plugins add no commands, and take a second to load
+        from evoframe.registry.observers import Observers  # noqa: PLC0415 - as they do
+
         try:
             Observers(plugins_of(ctx).manager).tell("evoframe_commands", cli=group)
         except EvoframeError as error:
             raise _failure(error) from error
         return group
+
+
+def _plugins_of_others() -> bool:
+    """Return whether a distribution other than evoframe's own offers plugins."""
+    points = importlib.metadata.entry_points(group="evoframe")
+    return any(point.dist is None or point.dist.name != "evoframe" for point in points)
 
 
 _EPILOG = """\b
@@ -103,23 +132,6 @@ def cli() -> None:
     Two populations of networks, one of bodies and one of controllers, are evolved together: each individual
     is judged by how well it does with partners from the other population.
     """
-
-
-for command in (
-    completion,
-    config,
-    doctor,
-    export,
-    plugins,
-    report,
-    resume,
-    robustness,
-    run,
-    simulate,
-    study,
-    verify,
-):
-    cli.add_command(command)
 
 
 def main() -> None:

@@ -9,7 +9,7 @@ import click
 from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
 from evoframe.cli.playing import play, show_end
 from evoframe.config.layers import Layer
-from evoframe.record.run import load_run
+from evoframe.record.run import open_run
 from evoframe.runs.resuming import configuration_of, is_finished, reopen
 
 __all__ = ["resume"]
@@ -49,11 +49,14 @@ def resume(
     """
     plugins = plugins_of(ctx)
     settings: list[str | Layer] = [*overrides, *workers]
-    if is_finished(directory):
-        if settings:
-            configuration_of(directory, settings, plugins)  # refuses what would have been another run
-        click.echo(f"{directory}: is finished", err=True)
-        if load_run(directory).verification is None:
-            show_end(ctx, configuration_of(directory, settings, plugins), directory)
-        return
-    play(ctx, reopen(directory, settings, plugins, allow_different_versions=allow_different_versions))
+    with open_run(directory) as run:
+        if not is_finished(run):
+            execution = reopen(run, settings, plugins, allow_different_versions=allow_different_versions)
+        else:
+            config = configuration_of(run, settings, plugins)  # refuses what would have been another run
+            click.echo(f"{directory}: is finished", err=True)
+            if run.verification() is None:
+                run.read_all()
+                show_end(ctx, config, run)
+            return
+    play(ctx, execution)

@@ -16,7 +16,7 @@ from evoframe.cli.context import (
 from evoframe.cli.playing import play
 from evoframe.config.layers import Layer, layer_of
 from evoframe.config.resolve import load_config
-from evoframe.runs.execution import prepare
+from evoframe.runs.starting import prepare
 
 __all__ = ["run"]
 
@@ -56,5 +56,6 @@ def run(
     evoframe resume goes on. At the end the champion is verified, as evoframe verify does.
     """
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
-    config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins_of(ctx))
-    play(ctx, prepare(config, out))
+    plugins = plugins_of(ctx)
+    config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins)
+    play(ctx, prepare(config, plugins, out))

@@ -21,12 +21,11 @@ from evoframe.cli.context import (
 )
 from evoframe.config.layers import Layer
 from evoframe.contract.config import RunConfig
-from evoframe.contract.protocols import unit_of
-from evoframe.contract.values import Design, Record
+from evoframe.contract.optional import unit_of
+from evoframe.contract.values import Design, Record, Score
 from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import InputError
-from evoframe.evolution.evaluation import Score
-from evoframe.runs.execution import evaluator_of
+from evoframe.evolution.assembly import evaluator_of
 
 __all__ = ["simulate"]
 

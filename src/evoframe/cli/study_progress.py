@@ -148,7 +148,7 @@ class StudyProgress:
         self._work.ended(planned, finished=end.state == "finished")
         if end.state == "finished":
             state.done += 1
-            score = load_run(planned.directory).summary["best_pair_score"]
+            score = load_run(planned.directory).summary()["best_pair_score"]
             state.saw(score)
             state.scores.append(score)
         elif end.state == "failed":

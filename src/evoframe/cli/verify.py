@@ -17,9 +17,9 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.config.layers import Layer
+from evoframe.contract.values import Score
 from evoframe.designs.sources import read_job
 from evoframe.designs.verifying import keep_of_job, verify_job
-from evoframe.evolution.evaluation import Score
 from evoframe.record.verification import Finding, Verification
 
 __all__ = ["verification_table", "verify"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -12,36 +11,21 @@ from typing import Any
 
 import attrs
 
+from evoframe.contract.config import COMPONENTS, POPULATION_COMPONENTS
+from evoframe.documents.trees import Tree
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files.reading import read_text
-from evoframe.registry.registry import suggestion
+from evoframe.messages import suggestion
 
 __all__ = [
-    "COMPONENTS",
-    "POPULATION_COMPONENTS",
     "Layer",
     "Layers",
-    "Tree",
-    "as_read",
     "layer_of",
+    "layers_in",
     "layers_of",
     "preset_names",
     "read_layers",
 ]
-
-Tree = dict[str, Any]
-
-COMPONENTS: Mapping[str, str] = {
-    "collaboration": "strategy",
-    "aggregator": "aggregator",
-    "simulator": "simulator",
-    "objective": "objective",
-    "executor": "executor",
-}
-"""Top-level key -> kind of the component that is chosen there."""
-
-POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "evolver"}
-"""Key within a population -> kind of the component that is chosen there."""
 
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
@@ -103,12 +87,6 @@ class Layers:
         return 0
 
 
-def as_read(tables: Mapping[str, Any]) -> Tree:
-    """Return tables as they are read back from a file: tuples are lists."""
-    read: Tree = json.loads(json.dumps(tables))
-    return read
-
-
 def preset_names() -> list[str]:
     """Return the names of the presets that come with evoframe."""
     return sorted(
@@ -130,6 +108,17 @@ def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> La
         ConfigurationError: Something cannot be read; says what and where.
     """
     return Layers(()).under(_chain(str(source), Path(), ())).under(overrides)
+
+
+def layers_in(tables: Mapping[str, Any], origin: str) -> Layers:
+    """Return the settings of a complete configuration that was read already.
+
+    Args:
+        tables: As in the ``config.toml`` of a run.
+        origin: What a person calls them.
+    """
+    own = {key: value for key, value in tables.items() if key not in ("extends", "provenance")}
+    return Layers(()).under([Layer(origin, own)])
 
 
 def layer_of(origin: str, key: str, value: Any) -> Layer:

@@ -10,21 +10,24 @@ from typing import Any, TypeVar, cast
 import attrs
 from attrs import validators
 
-from evoframe.config.layers import (
+from evoframe.config.layers import Layer, Layers, layer_of, read_layers
+from evoframe.contract.config import (
     COMPONENTS,
     POPULATION_COMPONENTS,
-    Layer,
-    Layers,
-    Tree,
-    layer_of,
-    read_layers,
+    Chosen,
+    PluginSettings,
+    PopulationConfig,
+    RunConfig,
+    RunSettings,
+    is_role,
 )
-from evoframe.contract.config import Chosen, PluginSettings, PopulationConfig, RunConfig, RunSettings, is_role
 from evoframe.contract.protocols import Simulator
-from evoframe.documents.structuring import Fault, StructureError, found, structure
+from evoframe.documents.structuring import Fault, StructureError, structure
+from evoframe.documents.trees import Tree
 from evoframe.errors import ConfigurationError, PluginError
+from evoframe.messages import found, suggestion
 from evoframe.registry.discovery import discover
-from evoframe.registry.registry import KINDS, Offer, Plugins, suggestion
+from evoframe.registry.registry import KINDS, Offer, Plugins
 
 __all__ = ["load_config", "named_simulator", "resolved"]
 
@@ -154,7 +157,6 @@ class _Reading:
             populations=cast("Mapping[str, PopulationConfig]", populations),
             plugins=settings,
             label=label,
-            discovered=plugins,
             **cast("dict[str, Any]", chosen),
         )
 
@@ -273,7 +275,8 @@ class _Checks:
                 if given in provided:
                     yield Fault(path, f"provides the role '{given}', which another population provides too")
             provided += encoder.provides
-        for needed in getattr(self.chosen.get("simulator"), "requires", ()):
+        simulator = self.chosen.get("simulator")
+        for needed in simulator.requires if simulator else ():
             if needed not in provided:
                 yield Fault(("simulator",), f"needs the role '{needed}', which no population provides")
 
@@ -291,16 +294,8 @@ def _breaches(offer: Offer, component: Any) -> Iterator[str]:
     missing = [name for name in members if not hasattr(component, name)]
     if missing:
         yield f"{where} has no {' and no '.join(missing)}"
-    if not _is_frozen(component):
+    if not attrs.inspect(type(component)).is_frozen:
         yield f"{where} is no frozen attrs class: its options could change while a run goes on"
-
-
-def _is_frozen(component: Any) -> bool:
-    try:
-        component.no_such_option = None
-    except AttributeError as error:  # slots forbid it too, but not a change of the options
-        return isinstance(error, attrs.exceptions.FrozenInstanceError)
-    return False
 
 
 def _refusal(

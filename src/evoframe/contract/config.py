@@ -10,7 +10,6 @@ import attrs
 import tomli_w
 from attrs import validators
 
-from evoframe.config.layers import COMPONENTS, Tree, as_read
 from evoframe.contract.protocols import (
     Aggregator,
     CollaborationStrategy,
@@ -21,18 +20,51 @@ from evoframe.contract.protocols import (
     Simulator,
 )
 from evoframe.documents.structuring import unstructure
-from evoframe.registry.registry import Plugins, Source
+from evoframe.documents.trees import Tree, as_read
 
 __all__ = [
+    "COMPONENTS",
+    "POPULATION_COMPONENTS",
     "Chosen",
     "PluginSettings",
     "PopulationConfig",
     "RunConfig",
     "RunSettings",
+    "Source",
     "is_role",
 ]
 
 C = TypeVar("C")
+
+COMPONENTS: Mapping[str, str] = {
+    "collaboration": "strategy",
+    "aggregator": "aggregator",
+    "simulator": "simulator",
+    "objective": "objective",
+    "executor": "executor",
+}
+"""Top-level key -> kind of the component that is chosen there."""
+
+POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "evolver"}
+"""Key within a population -> kind of the component that is chosen there."""
+
+
+@attrs.frozen(order=True)
+class Source:
+    """Where a plugin comes from.
+
+    Attributes:
+        distribution: Name of the installed distribution, or of the local module given with ``-p``.
+        version: The distribution's version; ``local`` for a local module.
+        entry_point: Name of the entry point in the group ``evoframe``.
+    """
+
+    distribution: str
+    version: str
+    entry_point: str
+
+    def __str__(self) -> str:
+        return f"'{self.entry_point}' of {self.distribution} {self.version}"
 
 
 @attrs.frozen
@@ -105,7 +137,6 @@ class RunConfig:
         executor: Spreads simulations over workers.
         plugins: What is blocked and required.
         label: Name of the preset or file, for the default directory.
-        discovered: The plugins that the components come from.
     """
 
     run: RunSettings
@@ -117,7 +148,6 @@ class RunConfig:
     executor: Chosen[Executor]
     plugins: PluginSettings = attrs.field(factory=PluginSettings)
     label: str = attrs.field(default="run", eq=False)
-    discovered: Plugins = attrs.field(factory=Plugins, eq=False, repr=False)
 
     def components(self) -> Iterator[tuple[str, Chosen[Any]]]:
         """Yield every chosen component with its dotted key."""

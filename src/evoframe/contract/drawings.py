@@ -6,16 +6,12 @@ The core draws what it is given; only a simulator knows what its designs look li
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol, TypeGuard
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.contract.protocols import Simulator
-from evoframe.contract.values import Design
-
-__all__ = ["DrawnSimulator", "Geometry", "GeometryPart", "NetworkGraph", "NetworkLink", "can_be_drawn"]
+__all__ = ["Geometry", "GeometryPart", "NetworkGraph", "NetworkLink"]
 
 
 @attrs.frozen(eq=False)
@@ -83,15 +79,3 @@ class NetworkGraph:
     outputs: tuple[int, ...]
     labels: Mapping[int, str]
     links: tuple[NetworkLink, ...]
-
-
-class DrawnSimulator(Simulator, Protocol):
-    """A simulator that says what its designs look like."""
-
-    def geometry(self, design: Design, frames: int) -> Geometry:
-        """Return a design at rest, and at *frames* - 1 later times at most."""
-
-
-def can_be_drawn(simulator: Simulator) -> TypeGuard[DrawnSimulator]:
-    """Return whether *simulator* says what its designs look like."""
-    return hasattr(simulator, "geometry")

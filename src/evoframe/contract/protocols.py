@@ -27,7 +27,6 @@ __all__ = [
     "Network",
     "Objective",
     "Simulator",
-    "unit_of",
 ]
 
 T = TypeVar("T")
@@ -263,8 +262,3 @@ class Executor(Protocol):
 
     def start(self) -> ExecutorRun:
         """Make the workers ready."""
-
-
-def unit_of(objective: Objective) -> str:
-    """Return the unit of an objective's scores; empty if it does not say."""
-    return str(getattr(objective, "unit", ""))

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from evoframe.contract.protocols import Simulator
 
 __all__ = [
     "BestPair",
@@ -21,9 +18,9 @@ __all__ = [
     "Pair",
     "PopulationReport",
     "Record",
+    "Score",
     "Scores",
     "Turn",
-    "Variant",
     "Workload",
 ]
 
@@ -116,25 +113,6 @@ class Export:
     left_out: tuple[str, ...] = ()
 
 
-@attrs.frozen(eq=False)
-class Variant:
-    """A simulation of a design with one thing changed, which shows what its score rests on.
-
-    Attributes:
-        name: What was changed, as the table of ``evoframe verify`` shows it. Variants of one name are draws
-            of one random change.
-        simulator: Simulates it.
-        design: What is simulated.
-        record: What is recorded: as many samples of the same tracks as in the unchanged simulation, so that
-            the same objective can score them.
-    """
-
-    name: str
-    simulator: Simulator
-    design: Design
-    record: Record
-
-
 @attrs.frozen
 class Member:
     """What a collaboration strategy and the record see of an individual.
@@ -154,6 +132,19 @@ class Member:
     genome_size: int = 0
     age: int = 0
     diverged: bool = False
+
+
+@attrs.frozen
+class Score:
+    """What a design scored.
+
+    Attributes:
+        value: In the objective's unit; ``None`` if the simulation diverged.
+        diverged_at: The step at which it diverged, or ``None``.
+    """
+
+    value: float | None
+    diverged_at: int | None = None
 
 
 @attrs.frozen

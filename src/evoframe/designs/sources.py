@@ -8,14 +8,16 @@ from pathlib import Path
 
 import attrs
 
-from evoframe.config.layers import Layer, read_layers
-from evoframe.config.resolve import load_config, named_simulator
+from evoframe.config.layers import Layer, Layers, layers_in, read_layers
+from evoframe.config.resolve import load_config, named_simulator, resolved
 from evoframe.contract.config import RunConfig
+from evoframe.contract.optional import SupportsReading, SupportsSettings
 from evoframe.contract.values import Design
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files.reading import is_directory
 from evoframe.record.champion import read_champion
-from evoframe.record.run import Run, load_run
+from evoframe.record.layout import CONFIG_FILE
+from evoframe.record.run import Run, open_run
 from evoframe.registry.registry import Plugins
 
 __all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
@@ -84,42 +86,46 @@ def naming(path: Path) -> Iterator[None]:
 
 
 def _of_run(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    run = load_run(path)
-    champion, source = run.champion, preset or path / "config.toml"
-    config = load_config(source, overrides=overrides, plugins=plugins)
+    with open_run(path) as run:
+        champion = run.champion()
+    own = read_layers(preset) if preset else layers_in(run.config, str(path / CONFIG_FILE))
+    config = resolved(own.under(overrides), Path(preset or CONFIG_FILE).stem, plugins)
     _check_roles(path, champion.design, config)
-    score = champion.score if preset is None and _changes_nothing(source, (), overrides) else None
+    score = champion.score if preset is None and _changes_nothing(own, overrides) else None
     return Job(path, config, (str(path),), (champion.design,), run, score)
 
 
 def _of_champion(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    design, simulation, recorded = read_champion(path)
-    source, own = preset or DEFAULT_PRESET, [] if preset else [Layer(str(path), simulation)]
-    config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
-    _check_roles(path, design, config)
-    score = recorded if preset is None and _changes_nothing(source, own, overrides) else None
-    return Job(path, config, (path.name,), (design,), score=score)
+    champion = read_champion(path)
+    own = (
+        read_layers(preset)
+        if preset
+        else read_layers(DEFAULT_PRESET, [Layer(str(path), champion.simulation)])
+    )
+    config = resolved(own.under(overrides), Path(preset or DEFAULT_PRESET).stem, plugins)
+    _check_roles(path, champion.design, config)
+    score = champion.score if preset is None and _changes_nothing(own, overrides) else None
+    return Job(path, config, (path.name,), (champion.design,), score=score)
 
 
 def _of_file(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
     source = preset or DEFAULT_PRESET
     own = _settings_of(path, source, overrides, plugins)
     config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
-    read = getattr(config.simulator.component, "read", None)
-    if read is None:
+    simulator = config.simulator.component
+    if not isinstance(simulator, SupportsReading):
         raise ConfigurationError(f"the simulator '{config.simulator.name}' reads no files")
-    labels, designs = zip(*read(path), strict=True)
+    labels, designs = zip(*simulator.read(path), strict=True)
     return Job(path, config, labels, designs)
 
 
 def _settings_of(path: Path, source: str, overrides: Sequence[str | Layer], plugins: Plugins) -> list[Layer]:
     """Return the layer of settings that a file brings with it, if it brings any."""
     simulator = named_simulator(source, overrides, plugins)
-    settings_of = getattr(simulator.component, "settings_of", None) if simulator else None
-    settings = settings_of(path) if settings_of else None
-    if simulator is None or settings is None:
+    if simulator is None or not isinstance(simulator.component, SupportsSettings):
         return []
-    return [Layer(str(path), {"simulator": {"name": simulator.name, **settings}})]
+    settings = simulator.component.settings_of(path)
+    return [] if settings is None else [Layer(str(path), {"simulator": {"name": simulator.name, **settings}})]
 
 
 def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
@@ -128,7 +134,7 @@ def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
         raise InputError(f"{path}: design: has no {' and no '.join(missing)}")
 
 
-def _changes_nothing(source: str | Path, own: Sequence[Layer], overrides: Sequence[str | Layer]) -> bool:
+def _changes_nothing(own: Layers, overrides: Sequence[str | Layer]) -> bool:
     """Return whether *overrides* leave simulation and scoring as they are."""
-    alone, together = (read_layers(source, given).merged() for given in (own, [*own, *overrides]))
+    alone, together = own.merged(), own.under(overrides).merged()
     return all(alone.get(key) == together.get(key) for key in ("simulator", "objective"))

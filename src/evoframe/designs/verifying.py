@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from evoframe.config.layers import layers_of
+from evoframe.contract.config import RunConfig
+from evoframe.contract.optional import SupportsVariants, Variant, unit_of
+from evoframe.contract.protocols import ExecutorRun, Objective
+from evoframe.contract.values import Design, Score
 from evoframe.designs.sources import Job, naming, read_job
+from evoframe.errors import ConfigurationError
+from evoframe.evolution.evaluation import simulated
 from evoframe.record.run import Run
-from evoframe.record.verification import Verification
+from evoframe.record.verification import UNCHANGED, Finding, Verification, keep_verification
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
-from evoframe.runs.execution import keep_verification, verified
 
 __all__ = ["keep_of_job", "verify", "verify_job"]
 
@@ -72,3 +78,63 @@ def keep_of_job(job: Job, verifications: Sequence[Verification]) -> None:
     if job.run is not None and job.score is not None:
         [verification] = verifications
         keep_verification(job.run.directory, verification)
+
+
+def verified(config: RunConfig, designs: Sequence[Design], score: float | None = None) -> list[Verification]:
+    """Return what becomes of designs in all variants of a configuration's simulator.
+
+    Args:
+        config: How they are simulated and scored, and by how many workers.
+        designs: What is verified, each on its own.
+        score: What a champion scored in its run.
+
+    Raises:
+        ConfigurationError: The simulator offers no variants.
+    """
+    simulator = config.simulator.component
+    if not isinstance(simulator, SupportsVariants):
+        raise ConfigurationError(
+            f"the simulator '{config.simulator.name}' offers no variants of a simulation, so there is "
+            "nothing that a score could be compared with"
+        )
+    workers = config.executor.component.start()
+    try:
+        return [
+            verify_design(simulator, config.objective.component, design, workers, score) for design in designs
+        ]
+    finally:
+        workers.close()
+
+
+def verify_design(
+    simulator: SupportsVariants,
+    objective: Objective,
+    design: Design,
+    workers: ExecutorRun,
+    score: float | None = None,
+) -> Verification:
+    """Simulate a design as it is, and in all variants of its simulator.
+
+    Args:
+        simulator: Simulates it, and offers the variants.
+        objective: Scores all of them.
+        design: What is verified.
+        workers: Simulate at the same time; the result does not depend on them.
+        score: What the design scored in its run, if it is a champion.
+
+    Raises:
+        RunError: The simulator or the objective did not keep its word.
+    """
+    variants = list(simulator.variants(design, objective.record))
+    unchanged = Variant(UNCHANGED, simulator, design, objective.record)
+    first, *others = workers.map(functools.partial(_score, objective), [unchanged, *variants])
+    drawn: dict[str, list[Score]] = {}
+    for variant, given in zip(variants, others, strict=True):
+        drawn.setdefault(variant.name, []).append(given)
+    findings = tuple(Finding(name, tuple(scores)) for name, scores in drawn.items())
+    return Verification(first, findings, unit_of(objective), score)
+
+
+def _score(objective: Objective, variant: Variant) -> Score:
+    [score] = simulated(variant.simulator, [variant.design], variant.record, objective)
+    return score

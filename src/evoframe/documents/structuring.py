@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 import math
 import numbers
 import re
@@ -21,7 +20,7 @@ from cattrs import (
 )
 from cattrs.gen import make_dict_structure_fn, override
 
-from evoframe.registry.registry import suggestion
+from evoframe.messages import found, suggestion
 
 __all__ = ["Fault", "StructureError", "structure", "unstructure"]
 
@@ -72,11 +71,6 @@ def structure(value: Any, target: type[T], path: Path) -> T:
 def unstructure(instance: Any) -> Any:
     """Return *instance* as TOML values; options that are ``None`` are left out, as TOML has no such value."""
     return _without_none(_converter().unstructure(instance))
-
-
-def found(value: Any) -> str:
-    """Return *value* as a person wrote it."""
-    return json.dumps(value, default=str, ensure_ascii=False)
 
 
 def _without_none(value: Any) -> Any:

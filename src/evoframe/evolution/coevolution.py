@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from evoframe.contract.blame import blaming
 from evoframe.contract.protocols import Aggregator, CollaborationStrategy
-from evoframe.contract.values import BestPair, Design, Pair, Scores, Turn, Workload
+from evoframe.contract.values import BestPair, Design, Pair, Score, Scores, Turn, Workload
 from evoframe.documents.structuring import structure
 from evoframe.errors import ComponentError
-from evoframe.evolution.evaluation import Evaluator, Score
+from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.population import Population
 
 __all__ = ["Coevolution", "first_meetings"]
@@ -213,10 +213,10 @@ class Coevolution:
         try:
             yield
         except ComponentError as error:
-            if not error.concerns:
-                met = [self._called(meetings[place]) for place in error.places]
-                error.concerns = "; ".join(met)
-            raise
+            if error.concerns:
+                raise
+            met = "; ".join(self._called(meetings[place]) for place in error.places)
+            raise attrs.evolve(error, concerns=met) from error
 
     def _called(self, meeting: Meeting) -> str:
         met = zip(self.populations, meeting, strict=True)

@@ -12,26 +12,13 @@ import numpy as np
 
 from evoframe.contract.blame import blaming
 from evoframe.contract.protocols import ExecutorRun, Objective, Simulator
-from evoframe.contract.values import Design, Outcome, Record
+from evoframe.contract.values import Design, Outcome, Record, Score
 from evoframe.errors import ComponentError, WorkerError
 
-__all__ = ["Evaluator", "Score", "simulated"]
+__all__ = ["Evaluator", "simulated"]
 
 _LARGEST_BATCH = 4  # as many share the cost of a call, and what the solver prepares for their common body
 _BATCHES_PER_WORKER = 2  # of what is left: the last ones are small, so that all workers end together
-
-
-@attrs.frozen
-class Score:
-    """What a design scored.
-
-    Attributes:
-        value: In the objective's unit; ``None`` if the simulation diverged.
-        diverged_at: The step at which it diverged, or ``None``.
-    """
-
-    value: float | None
-    diverged_at: int | None = None
 
 
 @attrs.define
@@ -113,12 +100,9 @@ def _finding_places(keys: Sequence[bytes]) -> Iterator[None]:
     try:
         yield
     except WorkerError as lost:
-        error = ComponentError("simulator", lost.problem)
-        error.places = _places(lost.item, keys)
-        raise error from lost
+        raise ComponentError("simulator", lost.problem, places=_places(lost.item, keys)) from lost
     except ComponentError as error:
-        error.places = _places(error.keys, keys)
-        raise
+        raise attrs.evolve(error, places=_places(error.keys, keys)) from error
 
 
 def _places(batch: Iterable[bytes], keys: Sequence[bytes]) -> tuple[int, ...]:
@@ -136,8 +120,7 @@ class _Simulation:
         try:
             scores = simulated(self.simulator, list(batch.values()), self.objective.record, self.objective)
         except ComponentError as error:
-            error.keys = tuple(batch)
-            raise
+            raise attrs.evolve(error, keys=tuple(batch)) from error
         return dict(zip(batch, scores, strict=True))
 
 

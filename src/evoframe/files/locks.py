@@ -10,7 +10,7 @@ import filelock
 
 from evoframe.errors import InputError, LockedError
 
-__all__ = ["LOCK_FILE", "Lock", "held", "held_after_others", "locked", "released_on_error"]
+__all__ = ["LOCK_FILE", "Lock", "acquire_lock", "locked", "locked_after_others", "released_on_error"]
 
 LOCK_FILE = "run.lock"
 """Stays in the directory: to remove it would let two processes lock two files of one name."""
@@ -18,7 +18,7 @@ LOCK_FILE = "run.lock"
 Lock = filelock.BaseFileLock
 
 
-def locked(directory: Path) -> Lock:
+def acquire_lock(directory: Path) -> Lock:
     """Return the lock of a run's directory, which ends with this process at the latest, however it ends.
 
     Raises:
@@ -48,14 +48,14 @@ def released_on_error(lock: Lock) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def held(directory: Path) -> Iterator[None]:
+def locked(directory: Path) -> Iterator[None]:
     """Have the lock of a run's directory for as long as what follows takes.
 
     Raises:
-        LockedError: As :func:`locked`.
-        InputError: As :func:`locked`.
+        LockedError: As :func:`acquire_lock`.
+        InputError: As :func:`acquire_lock`.
     """
-    lock = locked(directory)
+    lock = acquire_lock(directory)
     try:
         yield
     finally:
@@ -63,7 +63,7 @@ def held(directory: Path) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def held_after_others(path: Path) -> Iterator[None]:
+def locked_after_others(path: Path) -> Iterator[None]:
     """Have a lock for as long as what follows takes; wait for the processes that have it before.
 
     Args:

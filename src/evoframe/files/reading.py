@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import stat
+import tomllib
 from pathlib import Path
+from typing import Any
 
-from evoframe.errors import InputError
+from evoframe.errors import EvoframeError, InputError
 
-__all__ = ["is_directory", "is_file", "read_text", "refuse_links", "shown_name"]
+__all__ = [
+    "LARGEST_DOCUMENT",
+    "is_directory",
+    "is_file",
+    "parsed_json",
+    "parsed_toml",
+    "read_text",
+    "refuse_links",
+    "shown_name",
+]
+
+LARGEST_DOCUMENT = 64
+"""MiB; a design or a state of this size is none of ours."""
 
 
 def read_text(path: Path, largest: int) -> str:
@@ -32,6 +47,35 @@ def read_text(path: Path, largest: int) -> str:
         raise InputError(f"{path}: is not UTF-8 text") from error
     except ValueError as error:  # a name that no file can have
         raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
+
+
+def parsed_json(text: str) -> Any:
+    """Return what a file from anyone holds.
+
+    Raises:
+        ValueError: It is not valid JSON.
+    """
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"not valid JSON: {error}") from error
+
+
+def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputError) -> dict[str, Any]:
+    """Return the tables of a TOML file from anyone.
+
+    Args:
+        text: Its text.
+        origin: The name of the file in messages.
+        error_type: Type of the error.
+
+    Raises:
+        EvoframeError: It is not valid TOML; of the given type.
+    """
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
+        raise error_type(f"{origin}: not valid TOML: {error}") from error
 
 
 def is_directory(path: Path) -> bool:

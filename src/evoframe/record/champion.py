@@ -2,42 +2,54 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 from evoframe.contract.values import BestPair, Design
 from evoframe.errors import InputError, RunError
-from evoframe.files.reading import read_text
+from evoframe.files.reading import LARGEST_DOCUMENT, parsed_json, read_text
 
 __all__ = [
     "FORMAT",
-    "LARGEST_DOCUMENT",
+    "Champion",
     "champion_document",
     "champion_from_json",
     "design_from_json",
     "design_to_json",
-    "genomes_from_json",
-    "parsed_json",
     "read_champion",
 ]
 
 FORMAT = 1
 """Version of the champion's document; that of the run directory is another."""
 
-LARGEST_DOCUMENT = 64
-"""MiB; a design or a state of this size is none of ours."""
-
 _DTYPES = (
     *("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"),
     *("float16", "float32", "float64"),
 )
 _CHAMPION_KEYS = {"format", "score", "simulation", "design"}
+
+
+@attrs.frozen(eq=False)
+class Champion:
+    """The best pair that was really simulated.
+
+    Attributes:
+        score: What the objective gave; a displacement in metres with all built-in objectives.
+        design: Body and controller.
+        simulation: The tables ``simulator`` and ``objective`` that it was simulated with.
+        genomes: Population -> its genome, as its evolver dumps it.
+    """
+
+    score: float
+    design: Design
+    simulation: dict[str, Any]
+    genomes: dict[str, Any] = attrs.field(repr=False)
 
 
 def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str, Any]:
@@ -79,8 +91,8 @@ def design_from_json(document: Any) -> Design:
     return Design({role: _array_from_json(role, given) for role, given in document.items()})
 
 
-def champion_from_json(text: str) -> tuple[Design, dict[str, Any], float]:
-    """Return the design of a champion, the tables that it was simulated with, and its score.
+def champion_from_json(text: str) -> Champion:
+    """Return the champion that :func:`champion_document` described.
 
     Raises:
         ValueError: The text is not JSON, or no champion; says why.
@@ -92,31 +104,18 @@ def champion_from_json(text: str) -> tuple[Design, dict[str, Any], float]:
         raise ValueError(f"format {document['format']!r}, but this evoframe reads format {FORMAT}")
     if not isinstance(document["score"], float) or not math.isfinite(document["score"]):
         raise ValueError(f"score: expected a number, found {document['score']!r}")
-    if not isinstance(document["simulation"], dict):
-        raise ValueError(  # noqa: TRY004 - it is a bad document
-            f"simulation: expected a table, found {document['simulation']!r}"
-        )
+    genomes = document.get("genomes", {})
+    for key, table in (("simulation", document["simulation"]), ("genomes", genomes)):
+        if not isinstance(table, dict):
+            raise ValueError(f"{key}: expected a table, found {table!r}")  # noqa: TRY004 - it is a bad document
     try:
         design = design_from_json(document["design"])
     except (KeyError, OverflowError, TypeError, ValueError) as error:
         raise ValueError(f"design: not as evoframe writes it: {error}") from error
-    return design, document["simulation"], document["score"]
+    return Champion(document["score"], design, document["simulation"], genomes)
 
 
-def genomes_from_json(text: str) -> dict[str, Any]:
-    """Return the genomes of a champion, population -> JSON of its evolver.
-
-    Raises:
-        ValueError: The text is not JSON, or no champion with genomes.
-    """
-    document = parsed_json(text)
-    genomes = document.get("genomes") if isinstance(document, dict) else None
-    if not isinstance(genomes, dict):
-        raise ValueError(f"genomes: expected a table, found {genomes!r}")  # noqa: TRY004 - it is a bad document
-    return genomes
-
-
-def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
+def read_champion(path: Path) -> Champion:
     """Return what :func:`champion_from_json` finds in a ``champion.json``.
 
     Raises:
@@ -127,18 +126,6 @@ def read_champion(path: Path) -> tuple[Design, dict[str, Any], float]:
         return champion_from_json(text)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
-
-
-def parsed_json(text: str) -> Any:
-    """Return what a file from anyone holds.
-
-    Raises:
-        ValueError: It is not valid JSON.
-    """
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"not valid JSON: {error}") from error
 
 
 def _array_from_json(role: str, given: Any) -> NDArray[Any]:

@@ -59,17 +59,10 @@ def _checksum(rows: Iterable[Row], json_of: Callable[[list[Row]], str]) -> str:
 def _text(rows: Iterable[Row], json_of: Callable[[list[Row]], str]) -> bytes:
     """Return rows as one text, which is the same however they are parted into calls."""
     listed = list(rows)
-    text = json_of(listed)
-    if "-0.0," in text or "-0.0]" in text:  # the database keeps no sign of a zero
-        text = json_of([[_signless(value) for value in row] for row in listed])
-    return f"{text[1:-1]},".encode() if listed else b""
+    return f"{json_of(listed)[1:-1]},".encode() if listed else b""
 
 
 _json: Callable[[list[Row]], str] = json.JSONEncoder(separators=(",", ":")).encode
 
 # What is no JSON is the bytes of a damaged database.
 _json_of_anything: Callable[[list[Row]], str] = json.JSONEncoder(separators=(",", ":"), default=repr).encode
-
-
-def _signless(value: Any) -> Any:
-    return value + 0.0 if isinstance(value, float) else value

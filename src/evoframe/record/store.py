@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
-import os
 import sqlite3
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -17,29 +16,13 @@ import attrs
 from evoframe.contract.values import Design, Pair, PopulationReport, Turn
 from evoframe.errors import ComponentError, InputError, RunError
 from evoframe.files.locks import Lock
+from evoframe.files.writing import json_text, remove, write_atomically, write_json
 from evoframe.record.champion import champion_document
-from evoframe.record.checksums import Checksums
+from evoframe.record.checksums import CHAINED, SINGLE, Checksums
+from evoframe.record.database import Table
+from evoframe.record.layout import CHAMPION_FILE, DATABASE_FILE, RUN_FORMAT, schema
 
-__all__ = [
-    "CHAMPION_FILE",
-    "CONFIG_FILE",
-    "DATABASE_FILE",
-    "RUN_FORMAT",
-    "Store",
-    "is_leftover",
-    "remove",
-    "schema",
-    "write_atomically",
-    "write_json",
-]
-
-RUN_FORMAT = 2
-"""Version of the run directory; champion.json has its own."""
-
-CHAMPION_FILE = "champion.json"
-CONFIG_FILE = "config.toml"
-DATABASE_FILE = "run.db"
-_UNFINISHED = ".new"
+__all__ = ["Store"]
 
 Exports: TypeAlias = Callable[[Design], Mapping[str, bytes | None]]
 
@@ -49,38 +32,9 @@ _log = logging.getLogger(__name__)
 # undone by nobody who may only read, and names files that whoever undoes it touches.
 _WITHOUT_A_JOURNAL = "PRAGMA journal_mode = MEMORY"
 
+_SETTLED = 2  # rows of meta that stand there from the beginning: format and configuration
+
 _SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
-
-_SCHEMA = """
-CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE turns (
-    turn INTEGER, population TEXT, generation INTEGER NOT NULL,
-    best REAL NOT NULL, best_so_far REAL NOT NULL, standing_champion REAL NOT NULL, mean REAL NOT NULL,
-    PRIMARY KEY (turn, population)
-) WITHOUT ROWID;
-CREATE TABLE individuals (
-    turn INTEGER, population TEXT, position INTEGER, genome_id INTEGER NOT NULL, species INTEGER,
-    genome_size INTEGER NOT NULL, age INTEGER NOT NULL, fitness REAL NOT NULL, diverged INTEGER NOT NULL,
-    PRIMARY KEY (turn, population, position)
-) WITHOUT ROWID;
-CREATE TABLE pairs (
-    turn INTEGER, pair INTEGER, {roles}, score REAL, diverged_at INTEGER,
-    PRIMARY KEY (turn, pair)
-) WITHOUT ROWID;
-CREATE TABLE best_pairs (turn INTEGER PRIMARY KEY, score REAL NOT NULL, document TEXT NOT NULL);
-CREATE TABLE state (part TEXT PRIMARY KEY, turn INTEGER NOT NULL, state TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE workload (
-    turn INTEGER PRIMARY KEY, pairs INTEGER NOT NULL, simulations INTEGER NOT NULL, seconds REAL NOT NULL
-);
-CREATE TABLE resumes (number INTEGER PRIMARY KEY, after_turn INTEGER, differences TEXT NOT NULL);
-CREATE TABLE checksums (name TEXT PRIMARY KEY, checksum TEXT NOT NULL) WITHOUT ROWID;
-"""
-
-
-def schema(roles: Iterable[str]) -> list[str]:
-    """Return the statements that make the tables of a run's database."""
-    columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
-    return [statement.strip() for statement in _SCHEMA.format(roles=columns).split(";") if statement.strip()]
 
 
 @attrs.define
@@ -101,6 +55,7 @@ class Store:
     exports: Exports
     _lock: Lock
     _database: sqlite3.Connection
+    _rows: dict[str, dict[Any, tuple[Any, ...]]] = attrs.field(factory=dict, init=False, repr=False)
     _checksums: Checksums = attrs.field(factory=Checksums, init=False)
     _changed: list[tuple[str, str]] = attrs.field(factory=list, init=False)
     last_turn: int = attrs.field(default=-1, init=False)
@@ -128,21 +83,40 @@ class Store:
         with self._transaction():
             for statement in schema(roles):
                 self._database.execute(statement)
-            self._replace("meta", [("format", str(RUN_FORMAT)), ("configuration", _json(configuration))])
+            self._replace("meta", [("format", str(RUN_FORMAT)), ("configuration", json_text(configuration))])
 
-    def go_on(self, rows: Mapping[str, Sequence[Sequence[Any]]], resume: Sequence[Any] | None) -> None:
-        """Go on where a run was left, and note it.
+    def go_on(self, rows: Mapping[str, Sequence[tuple[Any, ...]]], differences: Sequence[str]) -> None:
+        """Continue where a run was left, and note the resume unless no turn is left.
 
         Args:
-            rows: All rows of the tables that only grow, as they were read.
-            resume: The row of this resume; ``None`` if no turn is left.
+            rows: Table -> its rows, as they were read.
+            differences: What is not as when the run began.
         """
         for table, saved in rows.items():
-            self._checksums.add(table, saved)
-        self.last_turn = rows["workload"][-1][0] if rows["workload"] else -1
-        if resume is not None:
+            self._keep(table, saved)
+            if table in CHAINED:
+                self._checksums.add(table, saved)
+        if rows["workload"]:
+            self.last_turn = rows["workload"][-1][0]
+        if not self.finished:
             with self._transaction():
-                self._insert("resumes", [tuple(resume)])
+                after = None if self.last_turn < 0 else self.last_turn
+                self._insert("resumes", [(len(rows["resumes"]), after, json.dumps(list(differences)))])
+
+    @property
+    def finished(self) -> bool:
+        """Whether the final figures are noted."""
+        return len(self._rows["meta"]) > _SETTLED
+
+    def tables(self) -> dict[str, Table]:
+        """Return all that is saved, as it would be read back; the store must be open."""
+        return {
+            name: Table(
+                tuple(column[0] for column in self._database.execute(f'SELECT * FROM "{name}"').description),  # noqa: S608 - one of ours
+                [row for _, row in sorted(self._rows.get(name, {}).items())],
+            )
+            for name in (*CHAINED, *SINGLE)
+        }
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
         """Save a turn and the state after it, both or neither; the files of a new champion may follow later.
@@ -161,7 +135,7 @@ class Store:
             work = turn.workload
             self._insert("workload", [(turn.index, work.pairs, work.simulations, work.seconds)])
             if champion:
-                self._insert("best_pairs", [(turn.index, champion["score"], _json(champion))])
+                self._insert("best_pairs", [(turn.index, champion["score"], json_text(champion))])
             self._replace(
                 "state", [(part, turn.index, _state(part, values)) for part, values in state.items()]
             )
@@ -191,7 +165,7 @@ class Store:
         """Note the final figures."""
         self.update_champion()
         with self._transaction():
-            self._replace("meta", [(key, _json(value)) for key, value in result.items()])
+            self._replace("meta", [(key, json_text(value)) for key, value in result.items()])
 
     def close(self) -> None:
         """Leave one self-contained database file, unless somebody is reading it just now."""
@@ -206,16 +180,24 @@ class Store:
 
     def _insert(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
         """Add rows to a table that only grows, in the order of their keys."""
-        listed = list(rows)
+        listed = [tuple(map(_signless, row)) for row in rows]
         if listed:
             self._write("INSERT", table, listed)
+            self._keep(table, listed)
             self._checksums.add(table, listed)
             self._changed.append(self._checksums.of(table))
 
     def _replace(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
         """Put rows in place of those with the same keys."""
         self._write("INSERT OR REPLACE", table, rows)
+        self._keep(table, rows)
         self._changed += [Checksums.of_row(table, row) for row in rows]
+
+    def _keep(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
+        """Keep rows in memory too, so that nobody has to read back what this process has written."""
+        kept = self._rows.setdefault(table, {})
+        for row in rows:
+            kept[row[0] if table in SINGLE else len(kept)] = row
 
     def _write(self, verb: str, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
         marks = ", ".join("?" * len(rows[0]))
@@ -249,58 +231,21 @@ class Store:
             self._synced = time.monotonic()
 
 
-def write_json(path: Path, document: Any) -> None:
-    """Write JSON as :func:`write_atomically` does, always in the same way."""
-    write_atomically(path, f"{_json(document)}\n".encode())
-
-
-def write_atomically(path: Path, data: bytes) -> None:
-    """Write a file so that a reader sees the old one or the new one, never a part.
-
-    Raises:
-        RunError: It cannot be written.
-    """
-    temporary = path.with_name(f".{path.name}{_UNFINISHED}")
-    try:
-        with temporary.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):  # the first error is the one to tell
-            temporary.unlink(missing_ok=True)
-        raise RunError(f"{path}: cannot be written: {error.strerror}") from error
-
-
-# What contains itself ends in a RecursionError.
-_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False, check_circular=False).encode
-
-
-def is_leftover(path: Path) -> bool:
-    """Return whether this is what a kill has left of the writing of a file."""
-    return path.name.startswith(".") and path.name.endswith(_UNFINISHED)
-
-
-def remove(path: Path) -> None:
-    """Remove a file, if it is there.
-
-    Raises:
-        RunError: It cannot be removed.
-    """
-    try:
-        path.unlink(missing_ok=True)
-    except OSError as error:
-        raise RunError(f"{path}: cannot be removed: {error.strerror}") from error
+def _signless(value: Any) -> Any:
+    """Return a value as the database keeps it, which has no sign of a zero."""
+    return value + 0.0 if isinstance(value, float) else value
 
 
 def _state(part: str, values: Any) -> str:
+    """Return a part of the state as text; one that cannot be JSON is its evolver's fault, if it has one."""
     try:
-        return _json(values)
+        return json_text(values)
     except (TypeError, ValueError, RecursionError) as error:
-        population = part.removeprefix("population/")
-        evolver = f"populations.{population}.evolver"
-        raise ComponentError(evolver, f"its state cannot be saved as JSON: {error}") from error
+        kind, _, population = part.partition("/")
+        problem = f"its state cannot be saved as JSON: {error}"
+        if kind == "population":
+            raise ComponentError(f"populations.{population}.evolver", problem) from error
+        raise RunError(f"{part}: {problem}") from error
 
 
 def _opened(path: Path) -> sqlite3.Connection:

@@ -2,43 +2,24 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import statistics
-from collections.abc import Mapping, Sequence
-from typing import Any, Protocol, TypeGuard
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import attrs
 
-from evoframe.contract.protocols import ExecutorRun, Objective, Simulator, unit_of
-from evoframe.contract.values import Design, Record, Variant
-from evoframe.evolution.evaluation import Score, simulated
+from evoframe.contract.values import Score
+from evoframe.files.writing import write_json
+from evoframe.record.layout import VERIFICATION_FILE
 
-__all__ = [
-    "UNCHANGED",
-    "VERIFICATION_FILE",
-    "Finding",
-    "VariedSimulator",
-    "Verification",
-    "can_verify",
-    "verification_from_json",
-    "verify_design",
-]
+__all__ = ["UNCHANGED", "Finding", "Verification", "keep_verification", "verification_from_json"]
 
 UNCHANGED = "unchanged"
 """Name of the simulation that the others are compared with."""
 
-VERIFICATION_FILE = "verification.json"
-"""Where a run's directory has the verification of its champion."""
-
 _FORMAT = 1
-
-
-class VariedSimulator(Simulator, Protocol):
-    """A simulator that offers variants."""
-
-    def variants(self, design: Design, record: Record) -> Sequence[Variant]:
-        """Return simulations of *design* with one thing changed in each."""
 
 
 @attrs.frozen
@@ -119,38 +100,13 @@ class Verification:
         }
 
 
-def can_verify(simulator: Simulator) -> TypeGuard[VariedSimulator]:
-    """Return whether *simulator* offers the variants that a verification is made of."""
-    return hasattr(simulator, "variants")
-
-
-def verify_design(
-    simulator: VariedSimulator,
-    objective: Objective,
-    design: Design,
-    workers: ExecutorRun,
-    score: float | None = None,
-) -> Verification:
-    """Simulate a design as it is, and in all variants of its simulator.
-
-    Args:
-        simulator: Simulates it, and offers the variants.
-        objective: Scores all of them.
-        design: What is verified.
-        workers: Simulate at the same time; the result does not depend on them.
-        score: What the design scored in its run, if it is a champion.
+def keep_verification(directory: Path, verification: Verification) -> None:
+    """Write the verification of a run's champion beside it, so that :meth:`Run.verification` finds it.
 
     Raises:
-        RunError: The simulator or the objective did not keep its word.
+        RunError: It cannot be written.
     """
-    variants = list(simulator.variants(design, objective.record))
-    unchanged = Variant(UNCHANGED, simulator, design, objective.record)
-    first, *others = workers.map(functools.partial(_score, objective), [unchanged, *variants])
-    drawn: dict[str, list[Score]] = {}
-    for variant, given in zip(variants, others, strict=True):
-        drawn.setdefault(variant.name, []).append(given)
-    findings = tuple(Finding(name, tuple(scores)) for name, scores in drawn.items())
-    return Verification(first, findings, unit_of(objective), score)
+    write_json(directory / VERIFICATION_FILE, verification.to_json())
 
 
 def verification_from_json(document: Any) -> Verification:
@@ -176,11 +132,6 @@ def verification_from_json(document: Any) -> Verification:
     if not same:
         raise ValueError("not as evoframe writes it: its figures do not follow from its scores")
     return verification
-
-
-def _score(objective: Objective, variant: Variant) -> Score:
-    [score] = simulated(variant.simulator, [variant.design], variant.record, objective)
-    return score
 
 
 def _finding(row: Mapping[str, Any]) -> Finding:

@@ -12,8 +12,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 
+from evoframe.contract.config import Source
 from evoframe.errors import PluginError, PluginWarning
-from evoframe.registry.registry import Plugins, Skipped, Source, normalized
+from evoframe.messages import cause_of
+from evoframe.registry.registry import Plugins, Skipped, normalized
 
 __all__ = ["discover"]
 
@@ -66,7 +68,7 @@ def _load_guarded(plugins: Plugins, source: Source, entry_point: importlib.metad
     try:
         plugins.add(entry_point.load(), source)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - any fault of a plugin is only that plugin's
-        cause = str(error) if isinstance(error, PluginError) else f"{type(error).__name__}: {error}"
+        cause = cause_of(error)
         plugins.skipped.append(Skipped(source, cause))
         warnings.warn(f"plugin {source} is skipped: {cause}", PluginWarning, stacklevel=3)
 
@@ -76,7 +78,7 @@ def _load_local(plugins: Plugins, module: str) -> None:
     try:
         plugins.add(_import_local(module, name), Source(name, "local", name))
     except (Exception, SystemExit) as error:
-        cause = str(error) if isinstance(error, PluginError) else f"{type(error).__name__}: {error}"
+        cause = cause_of(error)
         raise PluginError(f"plugin module '{module}' cannot be used: {cause}") from error
 
 

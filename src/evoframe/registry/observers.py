@@ -8,6 +8,7 @@ from typing import Any
 import pluggy
 
 from evoframe.errors import PluginWarning
+from evoframe.messages import cause_of
 
 __all__ = ["Observers"]
 
@@ -34,8 +35,9 @@ class Observers:
             except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever it does, the run goes on
                 self._active.remove(plugin)
                 name = self._manager.get_name(plugin)
-                cause = f"{type(error).__name__}: {error}"
-                warnings.warn(f"observer '{name}' is disabled: {cause}", PluginWarning, stacklevel=2)
+                warnings.warn(
+                    f"observer '{name}' is disabled: {cause_of(error)}", PluginWarning, stacklevel=2
+                )
 
     def _caller(self, hook: str) -> pluggy.HookCaller:
         caller: pluggy.HookCaller = getattr(self._manager.hook, hook)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -11,10 +10,12 @@ import attrs
 import pluggy
 
 from evoframe.contract import protocols
+from evoframe.contract.config import Source
 from evoframe.errors import ConfigurationError, PluginError
+from evoframe.messages import suggestion
 from evoframe.registry import hookspecs
 
-__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "Source", "normalized", "suggestion"]
+__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "normalized"]
 
 _COMPONENT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 
@@ -44,24 +45,6 @@ KINDS: Mapping[str, Kind] = {
 """Name of a kind in messages -> the kind."""
 
 
-@attrs.frozen(order=True)
-class Source:
-    """Where a plugin comes from.
-
-    Attributes:
-        distribution: Name of the installed distribution, or of the local module given with ``-p``.
-        version: The distribution's version; ``local`` for a local module.
-        entry_point: Name of the entry point in the group ``evoframe``.
-    """
-
-    distribution: str
-    version: str
-    entry_point: str
-
-    def __str__(self) -> str:
-        return f"'{self.entry_point}' of {self.distribution} {self.version}"
-
-
 @attrs.frozen
 class Offer:
     """A component that a plugin offers.
@@ -85,21 +68,6 @@ class Skipped:
 
     source: Source
     cause: str
-
-
-def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
-    """Return how a message about an unknown *word* ends.
-
-    Args:
-        word: What was written.
-        known: What could have been meant.
-        label: What to call a list of all that is known; without it there is none.
-    """
-    words = list(known)
-    close = difflib.get_close_matches(word, words, n=1, cutoff=0.5)
-    meant = f"; did you mean '{close[0]}'?" if close else ""
-    listed = f"{'' if meant else ';'} {label}: {', '.join(words) or 'none'}" if label else ""
-    return meant + listed
 
 
 def _new_manager() -> pluggy.PluginManager:

@@ -8,27 +8,20 @@ from typing import Any
 
 import attrs
 
-from evoframe.config.layers import as_read, layers_of
-from evoframe.contract.protocols import unit_of
+from evoframe.config.layers import layers_of
+from evoframe.contract.optional import SupportsRandomControllers, unit_of
+from evoframe.documents.trees import as_read
 from evoframe.errors import ConfigurationError
 from evoframe.record.run import Run
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 from evoframe.robustness.candidates import Candidates, champions, read_candidates
-from evoframe.robustness.measurement import (
-    Bench,
-    Body,
-    ControllingSimulator,
-    Robustness,
-    Setting,
-    can_draw,
-    digest_of,
-)
+from evoframe.robustness.measurement import Bench, Body, Robustness, Setting, digest_of
 
-__all__ = ["Measurable", "measurable", "measure", "robustness", "setting_of"]
+__all__ = ["Measurable", "measurable", "measure", "measure_robustness", "setting_of"]
 
 
-def robustness(  # noqa: PLR0913 - the options of the command
+def measure_robustness(  # noqa: PLR0913 - the options of the command
     *sources: Run | str | Path,
     controllers: int = 1000,
     published: bool = False,
@@ -88,7 +81,7 @@ def measurable(directory: Path, plugins: Plugins) -> Iterator[Measurable]:
     """
     for part in champions(directory, plugins):
         simulator = part.config.simulator.component
-        if can_draw(simulator):
+        if isinstance(simulator, SupportsRandomControllers):
             simulation = as_read(part.config.simulation())
             for body in part.bodies:
                 yield Measurable(digest_of(simulator, body.design), simulation)
@@ -138,7 +131,7 @@ def measure(
         workers.close()
 
 
-def _simulator(candidates: Candidates) -> ControllingSimulator:
+def _simulator(candidates: Candidates) -> SupportsRandomControllers:
     simulator: Any = candidates.config.simulator.component  # which draws controllers, as all candidates' do
-    found: ControllingSimulator = simulator
+    found: SupportsRandomControllers = simulator
     return found

@@ -11,12 +11,13 @@ from evoframe.config.layers import Layer
 from evoframe.config.resolve import load_config
 from evoframe.contract.blame import blaming
 from evoframe.contract.config import RunConfig
+from evoframe.contract.optional import SupportsPublished, SupportsRandomControllers
 from evoframe.designs.sources import DEFAULT_PRESET, Job, read_job
+from evoframe.documents.trees import differences
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files.reading import is_file, shown_name
-from evoframe.record.provenance import differences
 from evoframe.registry.registry import Plugins
-from evoframe.robustness.measurement import Candidate, can_draw, can_publish
+from evoframe.robustness.measurement import Candidate
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.names import name_of
 from evoframe.study.plan import Planned, read_study, shown
@@ -92,7 +93,7 @@ def read_candidates(
     _refuse_other_simulations(parts)
     _refuse_same_names(parts)
     config = parts[0].config
-    if not can_draw(config.simulator.component):
+    if not isinstance(config.simulator.component, SupportsRandomControllers):
         raise ConfigurationError(
             f"the simulator '{config.simulator.name}' draws no random controllers, so there is nothing that "
             "bodies could be measured with"
@@ -189,7 +190,7 @@ def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugi
 
 def _published(config: RunConfig) -> Part:
     simulator = config.simulator.component
-    if not can_publish(simulator):
+    if not isinstance(simulator, SupportsPublished):
         raise ConfigurationError(f"the simulator '{config.simulator.name}' brings no published bodies")
     named = f"published with {config.simulator.name}"
     with blaming("simulator"):

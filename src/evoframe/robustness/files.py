@@ -14,12 +14,10 @@ from typing import Any
 import attrs
 import numpy as np
 
-from evoframe.config.layers import as_read
+from evoframe.documents.trees import as_read, differences
 from evoframe.errors import InputError
-from evoframe.files.reading import is_file, read_text
-from evoframe.record.champion import parsed_json
-from evoframe.record.provenance import differences
-from evoframe.record.store import write_atomically
+from evoframe.files.reading import is_file, parsed_json, read_text
+from evoframe.files.writing import write_atomically
 from evoframe.robustness.measurement import Body, Divergence, Robustness, Setting
 
 __all__ = [

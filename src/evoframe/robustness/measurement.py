@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Protocol, TypeGuard
+from typing import Any
 
 import attrs
 import numpy as np
@@ -16,53 +16,26 @@ from attrs import validators
 from numpy.typing import NDArray
 
 from evoframe.contract.blame import blaming
-from evoframe.contract.protocols import ExecutorRun, Objective, Simulator
-from evoframe.contract.values import Design
+from evoframe.contract.optional import SupportsRandomControllers
+from evoframe.contract.protocols import ExecutorRun, Objective
+from evoframe.contract.values import Design, Score
 from evoframe.errors import ComponentError, ConfigurationError, InputError, WorkerError
-from evoframe.evolution.evaluation import Score, simulated
+from evoframe.evolution.evaluation import simulated
 from evoframe.evolution.randomness import stream
 
 __all__ = [
     "Bench",
     "Body",
     "Candidate",
-    "ControllingSimulator",
     "Divergence",
-    "PublishingSimulator",
     "Robustness",
     "Setting",
-    "can_draw",
-    "can_publish",
     "controlled",
     "digest_of",
 ]
 
 _BATCH = 8  # controllers of one body: as many share what the solver prepares for it
 _BATCHES_PER_WORKER = 8  # between two looks at how far it is
-
-
-class ControllingSimulator(Simulator, Protocol):
-    """A simulator that draws controllers."""
-
-    def random_controller(self, design: Design, rng: np.random.Generator) -> Design:
-        """Return the same body with a controller that is drawn at random."""
-
-
-class PublishingSimulator(Simulator, Protocol):
-    """A simulator that brings bodies of others."""
-
-    def published(self) -> Sequence[tuple[str, Design]]:
-        """Return them with their labels."""
-
-
-def can_draw(simulator: Simulator) -> TypeGuard[ControllingSimulator]:
-    """Return whether *simulator* offers random controllers."""
-    return hasattr(simulator, "random_controller")
-
-
-def can_publish(simulator: Simulator) -> TypeGuard[PublishingSimulator]:
-    """Return whether *simulator* offers bodies of others."""
-    return hasattr(simulator, "published")
 
 
 @attrs.frozen(eq=False)
@@ -171,7 +144,7 @@ class Robustness:
         return sum(divergence.body in columns for divergence in self.diverged)
 
 
-def controlled(simulator: ControllingSimulator, design: Design, seed: int, controller: int) -> Design:
+def controlled(simulator: SupportsRandomControllers, design: Design, seed: int, controller: int) -> Design:
     """Return a body with one of the controllers of a seed, whichever was drawn before.
 
     Raises:
@@ -184,7 +157,7 @@ def controlled(simulator: ControllingSimulator, design: Design, seed: int, contr
     return drawn
 
 
-def digest_of(simulator: ControllingSimulator, design: Design) -> str:
+def digest_of(simulator: SupportsRandomControllers, design: Design) -> str:
     """Return the digest of what remains of a design whatever controller is drawn for it."""
     drawn = controlled(simulator, design, 0, 0)
     digest = hashlib.sha256()
@@ -205,7 +178,7 @@ class Bench:
         workers: Simulate at the same time; the results do not depend on them.
     """
 
-    simulator: ControllingSimulator
+    simulator: SupportsRandomControllers
     objective: Objective
     workers: ExecutorRun
 
@@ -268,7 +241,7 @@ class _Batch:
 class _Work:
     """What a worker does with a batch."""
 
-    simulator: ControllingSimulator
+    simulator: SupportsRandomControllers
     objective: Objective
     seed: int
 
@@ -281,8 +254,7 @@ class _Work:
         except (ConfigurationError, InputError) as error:
             raise type(error)(f"{batch.label}: {error}") from error
         except ComponentError as error:
-            error.concerns = batch.about
-            raise
+            raise attrs.evolve(error, concerns=batch.about) from error
 
 
 def _batches(setting: Setting, designs: Sequence[Design]) -> Iterator[_Batch]:

@@ -15,14 +15,15 @@ from evoframe.record.checksums import CHAINED, SINGLE
 from evoframe.contract.config import RunConfig
 from evoframe.errors import EvoframeError, InputError
 from evoframe.evolution.evaluation import simulated
-from evoframe.record.run import Run, has_begun, load_run, run_tables
-from evoframe.files.locks import LOCK_FILE, locked
+from evoframe.record.run import Run, open_unchecked
+from evoframe.files.locks import LOCK_FILE, acquire_lock
 from evoframe.registry.registry import Plugins
-from evoframe.record.provenance import differences, provenance
+from evoframe.documents.trees import differences
+from evoframe.record.provenance import provenance
 from evoframe.config.resolve import load_config
 from evoframe.runs.resuming import configuration_of, restore
-from evoframe.runs.execution import assemble
-from evoframe.record.store import CHAMPION_FILE
+from evoframe.evolution.assembly import assemble
+from evoframe.record.layout import CHAMPION_FILE
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
 
@@ -61,29 +62,29 @@ def check_run(directory: Path, plugins: Plugins) -> Iterator[Check]:
     Raises:
         InputError: It is no run's directory, or another process is writing to it.
     """
-    run_tables(directory)
-    with _undisturbed(directory):
-        yield from _check_files(directory, plugins)
+    with _undisturbed(directory), open_unchecked(directory) as run:
+        yield from _check_files(run, plugins)
 
 
-def _check_files(directory: Path, plugins: Plugins) -> Iterator[Check]:
-    begun = _checked("database", lambda: "has begun" if has_begun(directory) else "")
-    if begun.state == "problem":
-        yield begun
+def _check_files(run: Run, plugins: Plugins) -> Iterator[Check]:
+    readable = _checked("format", lambda: _format(run))
+    if not run.begun:
+        if readable.state == "ok":
+            todo = f"evoframe resume {run.directory}"
+            finding = f"has no tables: killed before anything was saved; to begin: {todo}"
+            yield Check("database", "note", finding)
+        else:
+            yield Check("database", "problem", readable.finding)
         return
-    if not begun.finding:
-        todo = f"evoframe resume {directory}"
-        yield Check("database", "note", f"has no tables: killed before anything was saved; to begin: {todo}")
-        return
-    yield (readable := _checked("format", lambda: _format(load_run(directory))))
+    yield readable
     if readable.state == "problem":
         return
-    run = load_run(directory)
     yield (sound := _checked("database", lambda: _database(run)))
-    yield (resolved := _checked("configuration", lambda: _configuration(run, plugins)))
+    configurations: list[RunConfig] = []
+    yield (resolved := _checked("configuration", lambda: _configuration(run, plugins, configurations)))
     if "problem" in (sound.state, resolved.state):
         return
-    config = configuration_of(directory, (), plugins)
+    [config] = configurations
     yield _versions_then_and_now(run, config)
     yield _checked("turns", lambda: _turns(run, config))
     yield _checked("state", lambda: _state(run, config))
@@ -102,8 +103,8 @@ def _undisturbed(directory: Path) -> Iterator[None]:
     """Keep others from writing meanwhile; where nobody ever wrote or may write, nothing is made for that."""
     path = directory / LOCK_FILE
     with contextlib.ExitStack() as stack:
-        if path.is_file() and os.access(path, os.W_OK):
-            stack.callback(locked(directory).release)
+        if path.is_file() and not path.is_symlink() and os.access(path, os.W_OK):
+            stack.callback(acquire_lock(directory).release)
         yield
 
 
@@ -124,6 +125,7 @@ def _first_meeting(plugins: Plugins) -> str:
 
 
 def _format(run: Run) -> str:
+    run.check()
     return f"written by evoframe {run.config.get('provenance', {}).get('evoframe', 'of an unknown version')}"
 
 
@@ -135,8 +137,8 @@ def _database(run: Run) -> str:
     return f"{count:,} rows, all as they were saved"
 
 
-def _configuration(run: Run, plugins: Plugins) -> str:
-    configuration_of(run.directory, (), plugins)
+def _configuration(run: Run, plugins: Plugins, found: list[RunConfig]) -> str:
+    found.append(configuration_of(run, (), plugins))
     return "can be used with the plugins that are installed"
 
 
@@ -150,8 +152,8 @@ def _versions_then_and_now(run: Run, config: RunConfig) -> Check:
 def _turns(run: Run, config: RunConfig) -> str:
     for fault in _faults_of_turns(run, config):
         raise InputError(fault)
-    last, length = run.last_turn, config.run.generations * len(config.populations)
-    if run.finished:
+    last, length = run.last_turn(), config.run.generations * len(config.populations)
+    if run.finished():
         return f"finished after {length} turns"
     done = "none is saved" if last is None else f"saved up to {last} of {length}"
     return f"{done}; to go on: evoframe resume {run.directory}"
@@ -159,20 +161,20 @@ def _turns(run: Run, config: RunConfig) -> str:
 
 def _faults_of_turns(run: Run, config: RunConfig) -> Iterator[str]:
     """Yield where rows are missing, or contradict each other."""
-    work, roles = run.workload, list(config.populations)
+    work, roles = run.workload(), list(config.populations)
     turns = range(len(work))
     if [row["turn"] for row in work] != list(turns):
         yield "workload: turns are missing"
     judged = {(turn, role) for turn in turns for role in _judged(turn, roles, config)}
-    if {(row["turn"], row["population"]) for row in run.turns} != judged:
+    if {(row["turn"], row["population"]) for row in run.turns()} != judged:
         yield "turns: not those populations were judged whose turn it was"
-    members = Counter((row["turn"], row["population"]) for row in run.individuals)
+    members = Counter((row["turn"], row["population"]) for row in run.individuals())
     if members != {(turn, role): config.populations[role].size for turn, role in judged}:
         yield "individuals: not as many as the populations have"
-    pairs = Counter(row["turn"] for row in run.pairs)
+    pairs = Counter(row["turn"] for row in run.pairs())
     if pairs != {row["turn"]: row["pairs"] for row in work if row["pairs"]}:
         yield "pairs: not as many as in workload"
-    yield from _faults_of_best_pairs(run.table("best_pairs"), run.pairs)
+    yield from _faults_of_best_pairs(run.table("best_pairs"), run.pairs())
 
 
 def _judged(turn: int, roles: list[str], config: RunConfig) -> Iterable[str]:
@@ -208,9 +210,9 @@ def _state(run: Run, config: RunConfig) -> str:
 
 
 def _champion(run: Run, config: RunConfig) -> str:
-    if run.champion_document is None:
+    if run.champion_document() is None:
         return "there is none yet"
-    champion, objective = run.champion, config.objective.component
+    champion, objective = run.champion(), config.objective.component
     [score] = simulated(config.simulator.component, [champion.design], objective.record, objective)
     if score.value != champion.score:
         now = f"diverges at step {score.diverged_at}" if score.value is None else f"scores {score.value!r}"
@@ -220,9 +222,9 @@ def _champion(run: Run, config: RunConfig) -> str:
 
 def _champion_file(run: Run) -> str:
     """Return what there is to say of champion.json."""
-    if run.champion_is_written:
+    if run.champion_is_written():
         return ""
     todo = f"evoframe resume {run.directory} writes it again"
-    if run.finished:
+    if run.finished():
         raise InputError(f"{run.directory / CHAMPION_FILE}: is not that of the database; {todo}")
     return f"; {CHAMPION_FILE} is not up to date: {todo}"

@@ -2,36 +2,33 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from evoframe.record.champion import design_from_json, parsed_json
-from evoframe.record.checksums import CHAINED
-from evoframe.evolution.coevolution import Coevolution
+from evoframe.config.layers import Layer, layers_in, layers_of
+from evoframe.config.resolve import resolved
 from evoframe.contract.config import RunConfig
+from evoframe.contract.optional import SupportsVariants
+from evoframe.documents.trees import differences
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.config.layers import Layer, layers_of
-from evoframe.record.run import Run, has_begun, load_run, run_tables
-from evoframe.files.locks import locked, released_on_error
-from evoframe.registry.observers import Observers
+from evoframe.evolution.assembly import assemble
+from evoframe.evolution.coevolution import Coevolution
+from evoframe.files.locks import Lock, acquire_lock, released_on_error
+from evoframe.files.reading import parsed_json
+from evoframe.files.writing import is_leftover, remove
+from evoframe.record.champion import design_from_json
+from evoframe.record.checksums import CHAINED, SINGLE
+from evoframe.record.layout import CONFIG_FILE
+from evoframe.record.provenance import provenance
+from evoframe.record.run import Run, open_run
+from evoframe.record.store import Store
+from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
-from evoframe.record.provenance import differences, provenance
-from evoframe.config.resolve import load_config
-from evoframe.runs.execution import Execution, assemble, opened_store, verify_champion
-from evoframe.record.store import CONFIG_FILE, Store, is_leftover, remove
-from evoframe.record.verification import can_verify
+from evoframe.runs.execution import Execution, verify_champion
+from evoframe.runs.starting import opened_store
 
-__all__ = [
-    "configuration_of",
-    "is_finished",
-    "is_verified",
-    "reopen",
-    "restore",
-    "resume",
-    "verify_if_missing",
-]
+__all__ = ["configuration_of", "is_finished", "is_verified", "reopen", "restore", "resume", "verify_if_missing"]
 
 
 def resume(
@@ -59,139 +56,132 @@ def resume(
         InputError: It is no run's directory, it is damaged, or another process writes to it.
         RunError: The run cannot go on; what was saved stays.
     """
-    directory = Path(directory)
-    overrides = layers_of({"executor.workers": workers})
-    if is_finished(directory):
-        verify_if_missing(directory, overrides, plugins)
-        return load_run(directory)
-    execution = reopen(directory, overrides, plugins, allow_different_versions=allow_different_versions)
-    execution.play(Observers(execution.config.discovered.manager))
-    execution.verify()
-    return load_run(directory)
+    overrides, plugins = layers_of({"executor.workers": workers}), plugins or discover()
+    with open_run(directory) as run:
+        if is_finished(run):
+            run.read_all()
+            verify_if_missing(run, configuration_of(run, overrides, plugins))
+            return run
+        execution = reopen(run, overrides, plugins, allow_different_versions=allow_different_versions)
+    finished = execution.play()
+    execution.verify(finished)
+    return finished
 
 
-def is_finished(directory: Path) -> bool:
-    """Return whether a run's directory holds a run that has come to its end, with all its files.
+def is_finished(run: Run) -> bool:
+    """Return whether a run has come to its end, with all its files.
 
     Raises:
-        InputError: It is no run's directory, or damaged.
+        InputError: The run is damaged.
     """
-    run_tables(directory)
-    if not has_begun(directory):
-        return False
-    run = load_run(directory)
-    return run.finished and run.champion_is_written
+    return run.begun and run.finished() and run.champion_is_written()
 
 
-def is_verified(finished: Run, config: RunConfig) -> bool:
+def is_verified(run: Run, config: RunConfig) -> bool:
     """Return whether the champion of a finished run was verified, or cannot be: there are no variants.
 
     Raises:
         InputError: The verification is damaged, or about another champion.
     """
-    return not can_verify(config.simulator.component) or finished.verification is not None
+    return not isinstance(config.simulator.component, SupportsVariants) or run.verification() is not None
 
 
-def verify_if_missing(
-    directory: Path, overrides: Sequence[str | Layer] = (), plugins: Plugins | None = None
-) -> None:
-    """Verify the champion of a finished run, if nobody has: see :func:`~evoframe.runs.execution.verify_champion`.
+def verify_if_missing(run: Run, config: RunConfig) -> None:
+    """Verify the champion of a finished run, if nobody has: see :func:`verify_champion`.
 
     Args:
-        directory: The run's directory.
-        overrides: Settings of the executor.
-        plugins: The plugins to choose from.
+        run: The run.
+        config: Its configuration, from :func:`configuration_of`.
 
     Raises:
-        ConfigurationError: The configuration cannot be accepted, or is not that of the run.
         InputError: The run or its verification is damaged, or another process writes to it.
         RunError: The champion cannot be verified.
     """
-    config = configuration_of(directory, overrides, plugins)
-    if not is_verified(load_run(directory), config):
-        verify_champion(config, directory)
+    if not is_verified(run, config):
+        verify_champion(config, run)
 
 
 def reopen(
-    directory: Path,
-    overrides: Sequence[str | Layer] = (),
-    plugins: Plugins | None = None,
-    *,
-    allow_different_versions: bool = False,
+    run: Run, overrides: Sequence[str | Layer], plugins: Plugins, *, allow_different_versions: bool = False
 ) -> Execution:
     """Return a run ready to go on after its last complete turn.
 
     Args:
-        directory: The run's directory.
+        run: The run; it is open, and closed afterwards.
         overrides: Settings of the executor.
-        plugins: The plugins to choose from.
+        plugins: The plugins to choose from, which may observe the run.
         allow_different_versions: As for :func:`resume`.
 
     Raises:
         ConfigurationError: As :func:`resume`.
         InputError: As :func:`resume`.
     """
-    run_tables(directory)
-    lock = locked(directory)
+    lock = acquire_lock(run.directory)
     with released_on_error(lock):
-        config = configuration_of(directory, overrides, plugins)
-        saved = load_run(directory) if has_begun(directory) else None
-        changes = _changes(directory, config, allowed=allow_different_versions)
-        coevolution = assemble(config)
-        try:
-            if saved is not None:
-                restore(coevolution, saved)
-            store = opened_store(directory, config, lock)
-            if saved is None:  # killed before its first transaction
-                store.begin(list(config.populations), config.deciding())
-            else:
-                _go_on(store, saved, changes)
-        except BaseException:
-            coevolution.close()
-            raise
-        return Execution(config, directory, coevolution, store)
+        if not run.outdated():
+            return _reopened(run, lock, overrides, plugins, allowed=allow_different_versions)
+        with open_run(run.directory) as newer:  # another process was at it, a moment ago
+            return _reopened(newer, lock, overrides, plugins, allowed=allow_different_versions)
 
 
-def configuration_of(directory: Path, overrides: Sequence[str | Layer], plugins: Plugins | None) -> RunConfig:
-    """Return the configuration of a run, which is complete: it must not make us read other files.
+def _reopened(
+    run: Run, lock: Lock, overrides: Sequence[str | Layer], plugins: Plugins, *, allowed: bool
+) -> Execution:
+    config = configuration_of(run, overrides, plugins)
+    changes = _changes(run, config, allowed=allowed)
+    if run.begun:
+        run.read_all()
+    coevolution = assemble(config)
+    try:
+        if run.begun:
+            restore(coevolution, run)
+        run.close()  # whoever reads keeps others from writing
+        store = opened_store(run.directory, config, lock)
+        if run.begun:
+            _go_on(store, run, changes)
+        else:  # killed before its first transaction
+            store.begin(list(config.populations), config.deciding())
+    except BaseException:
+        coevolution.close()
+        raise
+    usable = plugins.without(config.plugins.block)
+    return Execution(config, usable, run.directory, run.config, coevolution, store)
+
+
+def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
+    """Return the configuration of a run, resolved.
 
     What decides the run must be as it was when it began, in the file as with the overrides.
 
     Args:
-        directory: The run's directory.
+        run: The run.
         overrides: Settings of the executor.
         plugins: The plugins to choose from.
 
     Raises:
         ConfigurationError: It cannot be accepted, or is not that of the run; says what differs.
-        InputError: It is not complete, or the run is damaged.
+        InputError: The run is damaged.
     """
-    run_tables(directory)  # refuses what would make us look elsewhere
-    path = directory / CONFIG_FILE
-    config = load_config(path, overrides=overrides, plugins=plugins)
-    if has_begun(directory):
-        began: Mapping[str, Any] = load_run(directory).configuration
-    else:
-        began = load_config(path, plugins=plugins).deciding()
-    others = differences(began, config.deciding())
-    if others:
-        raise ConfigurationError(_listed(f"{directory}: the configuration is not that of the run", others))
+    path = run.directory / CONFIG_FILE
+    layers = layers_in(run.config, str(path))
+    config = resolved(layers.under(overrides), path.stem, plugins)
+    began = run.configuration() if run.begun else resolved(layers, path.stem, plugins).deciding()
+    if others := differences(began, config.deciding()):
+        raise ConfigurationError(_listed(f"{run.directory}: the configuration is not that of the run", others))
     return config
 
 
-def _changes(directory: Path, config: RunConfig, *, allowed: bool) -> list[str]:
+def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
     """Return what is not as when the run began, apart from its configuration.
 
     Raises:
         ConfigurationError: There is something, and that is not allowed.
     """
-    changes = differences(run_tables(directory).get("provenance", {}), provenance(config))
+    changes = differences(run.config.get("provenance", {}), provenance(config))
     if changes and not allowed:
+        message = f"{run.directory}: not what the run was begun with, so its result may differ"
         todo = "to go on all the same, which is noted: --allow-different-versions"
-        raise ConfigurationError(
-            _listed(f"{directory}: not what the run was begun with, so its result may differ", changes)
-            + f"\n  {todo}"
-        )
+        raise ConfigurationError(f"{_listed(message, changes)}\n  {todo}")
     return changes
 
 
@@ -205,7 +195,7 @@ def restore(coevolution: Coevolution, saved: Run) -> None:
     Raises:
         InputError: The state is missing, or no state.
     """
-    state, last = saved.state, saved.last_turn
+    state, last = saved.state(), saved.last_turn()
     if last is None and not state:
         return
     try:
@@ -227,9 +217,8 @@ def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:
     for path in saved.directory.iterdir():
         if is_leftover(path):
             remove(path)
-    rows: Mapping[str, Any] = {table: saved.rows(table) for table in CHAINED}
-    resume = None if saved.finished else (len(rows["resumes"]), saved.last_turn, json.dumps(changes))
-    store.go_on(rows, resume)
-    if saved.champion_document is not None and not saved.champion_is_written:
-        champion = parsed_json(saved.champion_document)
+    store.go_on({table: saved.rows(table) for table in (*CHAINED, *SINGLE)}, changes)
+    document = saved.champion_document()
+    if document is not None and not saved.champion_is_written():
+        champion: Mapping[str, Any] = parsed_json(document)
         store.save_champion(champion, design_from_json(champion["design"]))

@@ -14,11 +14,11 @@ from typing import Any, Protocol
 import attrs
 import tomli_w
 
+from evoframe.documents.trees import differences
 from evoframe.errors import InputError
-from evoframe.files.locks import held_after_others
+from evoframe.files.locks import locked_after_others
 from evoframe.files.reading import read_text
-from evoframe.record.provenance import differences
-from evoframe.record.store import is_leftover, write_atomically
+from evoframe.files.writing import is_leftover, write_atomically
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.progress import REMEDY, Status, forget_failure, note_failure, status
@@ -73,7 +73,7 @@ def alone(directory: Path) -> contextlib.AbstractContextManager[None]:
     Raises:
         InputError: It cannot be written.
     """
-    return held_after_others(directory / _LOCK_FILE)
+    return locked_after_others(directory / _LOCK_FILE)
 
 
 def refuse_another(study: Study, directory: Path) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 
 import attrs
 
-from evoframe.record.run import load_run
-from evoframe.runs.execution import assemble
+from evoframe.evolution.assembly import assemble
+from evoframe.record.run import open_run
 from evoframe.study.plan import Planned
 
 __all__ = ["Estimate", "estimated"]
@@ -45,7 +45,11 @@ def estimated(missing: Sequence[Planned], finished: Sequence[Planned]) -> Estima
 
 
 def _seconds(runs: Iterable[Planned]) -> float:
-    return float(sum(row["seconds"] for run in runs for row in load_run(run.directory).workload))
+    total = 0.0
+    for planned in runs:
+        with open_run(planned.directory) as run:
+            total += sum(row["seconds"] for row in run.workload())
+    return total
 
 
 def _size(run: Planned) -> int:

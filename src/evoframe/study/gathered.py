@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from evoframe.errors import InputError
+from evoframe.record.run import open_run
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.progress import REMEDY, Status
 from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write_rows
@@ -116,12 +117,17 @@ def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) 
     """
     try:
         return {
-            run: imported[run] if status.state == "imported" else row_of(run)
-            for run, status in statuses.items()
+            planned: imported[planned] if status.state == "imported" else _own_row(planned)
+            for planned, status in statuses.items()
             if status.is_done
         }
     except InputError as error:
         raise InputError(f"{error}; {REMEDY}") from error
+
+
+def _own_row(planned: Planned) -> Row:
+    with open_run(planned.directory) as run:
+        return row_of(planned, run)
 
 
 def _refuse_another(row: Row, run: Planned, path: Path) -> None:

@@ -14,13 +14,14 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.config.layers import Layer, Layers, Tree, layer_of, read_layers
+from evoframe.config.layers import Layer, Layers, layer_of, read_layers
 from evoframe.config.resolve import resolved
 from evoframe.contract.config import RunConfig
-from evoframe.documents.structuring import found
+from evoframe.documents.trees import Tree
 from evoframe.errors import ConfigurationError
 from evoframe.evolution.coevolution import first_meetings
-from evoframe.registry.registry import Plugins, suggestion
+from evoframe.messages import found, suggestion
+from evoframe.registry.registry import Plugins
 from evoframe.study.names import headings
 
 __all__ = ["Cell", "Planned", "Study", "read_study", "shown", "study_names"]

@@ -12,7 +12,8 @@ from typing import Literal, TypeAlias
 import attrs
 import pebble
 
-from evoframe.errors import EvoframeError, LockedError
+from evoframe.errors import LockedError
+from evoframe.messages import cause_of
 from evoframe.study.worker import Order, Talk, perform
 from evoframe.workers.processes import WorkerProcesses
 
@@ -111,7 +112,5 @@ def _work(number: int, order: Order) -> End:
         return End("finished" if perform(order, _talk(number)) else "stopped")
     except LockedError:
         return End("elsewhere")
-    except EvoframeError as error:
-        return End("failed", str(error))
     except Exception as error:  # noqa: BLE001 - the other runs of a study go on, and this one says why not
-        return End("failed", f"{type(error).__name__}: {error}")
+        return End("failed", cause_of(error))

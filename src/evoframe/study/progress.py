@@ -10,10 +10,11 @@ from typing import Literal, TypeAlias
 import attrs
 
 from evoframe.errors import InputError, LockedError
-from evoframe.files.locks import held
+from evoframe.files.locks import locked
 from evoframe.files.reading import read_text
-from evoframe.record.run import has_begun, load_run
-from evoframe.record.store import CONFIG_FILE, write_json
+from evoframe.files.writing import write_json
+from evoframe.record.layout import CONFIG_FILE
+from evoframe.record.run import open_run
 from evoframe.runs.resuming import is_verified
 from evoframe.study.plan import Planned
 
@@ -65,13 +66,13 @@ def status(planned: Planned) -> Status:
         return Status("failed", cause)
     if not (directory / CONFIG_FILE).is_file():
         return Status("missing")
-    if not has_begun(directory):
-        return Status("begun")
-    run = load_run(directory)
-    _refuse_another(planned, run.configuration)
-    if not run.finished:
-        return Status("begun")
-    return Status("finished", verified=is_verified(run, planned.cell.config))
+    with open_run(directory) as run:
+        if not run.begun:
+            return Status("begun")
+        _refuse_another(planned, run.configuration())
+        if not run.finished():
+            return Status("begun")
+        return Status("finished", verified=is_verified(run, planned.cell.config))
 
 
 def note_failure(directory: Path, cause: str) -> None:
@@ -85,7 +86,7 @@ def note_failure(directory: Path, cause: str) -> None:
     """
     path = directory / FAILURE_FILE
     directory.mkdir(parents=True, exist_ok=True)
-    with contextlib.suppress(LockedError), held(directory):
+    with contextlib.suppress(LockedError), locked(directory):
         if not path.exists():
             write_json(path, {"cause": cause})
 

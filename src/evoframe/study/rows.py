@@ -15,8 +15,9 @@ import attrs
 
 from evoframe.errors import InputError
 from evoframe.files.reading import read_text
-from evoframe.record.run import Run, load_run
-from evoframe.record.store import CHAMPION_FILE, write_atomically
+from evoframe.files.writing import write_atomically
+from evoframe.record.layout import CHAMPION_FILE
+from evoframe.record.run import Run
 from evoframe.study.plan import Planned, shown
 
 __all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "score_curve", "write_rows"]
@@ -95,14 +96,17 @@ def digest(planned: Planned) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def row_of(planned: Planned) -> Row:
+def row_of(planned: Planned, run: Run) -> Row:
     """Return what is left of a finished run.
 
+    Args:
+        planned: The run as it was planned.
+        run: The run as it is.
+
     Raises:
-        InputError: Its directory is damaged.
+        InputError: It is damaged.
     """
-    run = load_run(planned.directory)
-    work, summary = run.workload, run.summary
+    work, summary = run.workload(), run.summary()
     fitness, score = _fitness_curve(run), score_curve(run, len(planned.cell.config.populations))
     return Row(
         settings={key: shown(value) for key, value in planned.cell.settings},
@@ -131,7 +135,7 @@ def _digest_of(path: Path) -> str:
 
 def _fitness_curve(run: Run) -> tuple[float, ...]:
     best: dict[int, float] = {}
-    for row in run.turns:
+    for row in run.turns():
         generation = row["generation"]
         best[generation] = max(row["best"], best.get(generation, row["best"]))
     return tuple(best[generation] for generation in sorted(best))
@@ -139,7 +143,7 @@ def _fitness_curve(run: Run) -> tuple[float, ...]:
 
 def score_curve(run: Run, populations: int) -> tuple[float, ...]:
     """Return the best score so far at the end of each generation, in which every population has its turn."""
-    ends = range(0, len(run.workload), populations)
+    ends = range(0, len(run.workload()), populations)
     found = run.table("best_pairs")
     return tuple(
         max((row["score"] for row in found if row["turn"] <= end), default=float("nan")) for end in ends

@@ -15,13 +15,14 @@ from evoframe.config.resolve import resolved
 from evoframe.contract.config import RunConfig
 from evoframe.contract.values import Turn
 from evoframe.errors import InputError, LockedError, NotEmptyError, OccupiedError
-from evoframe.record.store import CONFIG_FILE
+from evoframe.record.layout import CONFIG_FILE
+from evoframe.record.run import open_run
 from evoframe.registry.discovery import discover
 from evoframe.registry.hookspecs import hookimpl
-from evoframe.registry.observers import Observers
 from evoframe.registry.registry import Plugins
-from evoframe.runs.execution import Execution, prepare
-from evoframe.runs.resuming import is_finished, reopen, verify_if_missing
+from evoframe.runs.execution import Execution
+from evoframe.runs.resuming import configuration_of, is_finished, reopen, verify_if_missing
+from evoframe.runs.starting import prepare
 from evoframe.study.progress import REMEDY
 
 __all__ = ["INTERVAL", "Order", "Talk", "perform"]
@@ -68,18 +69,24 @@ def perform(order: Order, talk: Talk) -> bool:
         EvoframeError: It cannot be made, cannot go on, or cannot be verified.
     """
     plugins = discover(order.modules)
-    config = resolved(order.layers, order.label, plugins)
-    alone = _alone(config)
-    execution = _begun(order, alone, plugins)
-    if execution is None and is_finished(order.directory):
-        verify_if_missing(order.directory, alone, plugins)
+    alone = _alone(resolved(order.layers, order.label, plugins))
+    execution = _begun(order, alone, plugins) or _reopened(order, alone, plugins)
+    if execution is None:
         return True
-    execution = execution or reopen(order.directory, alone, plugins)
-    plugins.manager.register(_Teller(talk), name="evoframe:study")
-    completed = execution.play(Observers(plugins.manager), talk.stop)
-    if completed:
-        execution.verify()
-    return completed
+    execution.plugins.manager.register(_Teller(talk), name="evoframe:study")
+    run = execution.play(talk.stop)
+    if run.finished():
+        execution.verify(run)
+    return run.finished()
+
+
+def _reopened(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
+    """Return the run that is there, ready to go on; ``None`` if it is finished, and verified now."""
+    with open_run(order.directory) as run:
+        if not is_finished(run):
+            return reopen(run, alone, plugins)
+        verify_if_missing(run, configuration_of(run, alone, plugins))
+    return None
 
 
 def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
@@ -87,7 +94,7 @@ def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution 
     if (order.directory / CONFIG_FILE).exists():
         return None
     try:
-        return prepare(resolved(order.layers.under(alone), order.label, plugins), order.directory)
+        return prepare(resolved(order.layers.under(alone), order.label, plugins), plugins, order.directory)
     except OccupiedError:  # by another process, a moment ago
         return None
     except LockedError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
+from evoframe.contract.optional import SupportsInputNames, SupportsOutputNames
 from evoframe.contract.protocols import Encoder, Network
 from evoframe.contract.values import Design
 from evoframe.testing.components import ComponentContract
@@ -52,13 +53,16 @@ class EncoderContract(ComponentContract[Encoder]):
 
     def test_names_are_as_many_as_inputs_and_outputs(self) -> None:
         """A tuple of different words for each, so that a figure can tell them apart."""
-        for offered, number in (("input_names", "inputs"), ("output_names", "outputs")):
-            if hasattr(self.component, offered):
-                names = getattr(self.component, offered)
-                assert isinstance(names, tuple), f"{offered} is no tuple"
-                assert len(names) == getattr(self.component, number)
-                assert all(isinstance(name, str) and name.strip() for name in names)
-                assert len(set(names)) == len(names), f"{offered} has the same name twice"
+        offered: list[tuple[str, tuple[str, ...], int]] = []
+        if isinstance(self.component, SupportsInputNames):
+            offered.append(("input_names", self.component.input_names, self.component.inputs))
+        if isinstance(self.component, SupportsOutputNames):
+            offered.append(("output_names", self.component.output_names, self.component.outputs))
+        for key, names, number in offered:
+            assert isinstance(names, tuple), f"{key} is no tuple"
+            assert len(names) == number
+            assert all(isinstance(name, str) and name.strip() for name in names)
+            assert len(set(names)) == len(names), f"{key} has the same name twice"
 
     def test_the_example_has_the_required_roles(self) -> None:
         """Otherwise the other tests say nothing: override ``design()``."""

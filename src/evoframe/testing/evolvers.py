@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from evoframe.contract.drawings import NetworkGraph
+from evoframe.contract.optional import SupportsGraph
 from evoframe.contract.protocols import Evolver, EvolverRun
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, global_random_state_untouched, refusal, same_bits
@@ -228,13 +229,13 @@ class EvolverContract(ComponentContract[Evolver]):
 
     def _drawable(self) -> Iterator[Any]:
         """Return the dumped genomes of several generations if the evolver offers their graphs."""
-        if hasattr(self.component, "graph"):
+        if isinstance(self.component, SupportsGraph):
             for run, genomes in self._play(self.start()):
                 yield from map(run.dump, genomes)
 
     def _graph(self, dumped: Any) -> NetworkGraph:
-        component: Any = self.component
-        graph = component.graph(dumped, self.inputs, self.outputs)
+        assert isinstance(self.component, SupportsGraph)
+        graph = self.component.graph(dumped, self.inputs, self.outputs)
         assert isinstance(graph, NetworkGraph)
         return graph
 

@@ -10,13 +10,19 @@ import attrs
 import numpy as np
 import pytest
 
-from evoframe.contract.drawings import Geometry, can_be_drawn
+from evoframe.contract.drawings import Geometry
+from evoframe.contract.optional import (
+    SupportsExport,
+    SupportsGeometry,
+    SupportsPublished,
+    SupportsRandomControllers,
+    SupportsVariants,
+    Variant,
+)
 from evoframe.contract.protocols import Simulator
-from evoframe.contract.values import Design, Export, Outcome, Record, Variant
-from evoframe.designs.exporting import export_design, formats_of
+from evoframe.contract.values import Design, Export, Outcome, Record
 from evoframe.errors import ConfigurationError
-from evoframe.record.verification import UNCHANGED, can_verify
-from evoframe.robustness.measurement import can_draw, can_publish
+from evoframe.record.verification import UNCHANGED
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import assert_is_mesh, same_arrays, same_outcome
 
@@ -221,11 +227,15 @@ class SimulatorContract(ComponentContract[Simulator]):
 
     def test_each_format_gives_the_same_bytes_twice(self) -> None:
         """With what it cannot say in words."""
-        for format_ in formats_of(self.component):
+        component = self.component
+        assert hasattr(component, "formats") == hasattr(component, "export"), "one of both is missing"
+        if not isinstance(component, SupportsExport):
+            return
+        for format_ in component.formats:
             assert re.fullmatch("[a-z0-9]+", format_), f"'{format_}' cannot be the ending of a file"
             assert format_ != "json", "a run's champion.json is evoframe's own"
             for design in self.designs():
-                first, second = (export_design(self.component, design, format_) for _ in range(2))
+                first, second = (component.export(design, format_) for _ in range(2))
                 assert isinstance(first, Export)
                 assert isinstance(first.data, bytes)
                 assert first.data, "an export without any bytes"
@@ -255,20 +265,20 @@ class SimulatorContract(ComponentContract[Simulator]):
                 assert np.array_equal(part.faces, moving.faces)
 
     def _geometries(self, frames: int) -> list[Geometry]:
-        if not can_be_drawn(self.component):
+        if not isinstance(self.component, SupportsGeometry):
             return []
         return [self.component.geometry(design, frames) for design in self.designs()]
 
     def test_a_random_controller_is_that_of_the_generators_state(self) -> None:
         """The same again from the same state, another from another."""
-        for design in self.designs() if can_draw(self.component) else []:
+        for design in self.designs() if isinstance(self.component, SupportsRandomControllers) else []:
             one, again, other = (self._drawn(design, seed).roles for seed in (1, 1, 2))
             assert same_arrays(one, again)
             assert not same_arrays(one, other), "chance changes nothing"
 
     def test_a_random_controller_leaves_the_body(self) -> None:
         """The roles stay, at least one of them as it was, and there is something to simulate."""
-        for design in self.designs() if can_draw(self.component) else []:
+        for design in self.designs() if isinstance(self.component, SupportsRandomControllers) else []:
             drawn = self._drawn(design, 1)
             assert isinstance(drawn, Design)
             assert set(drawn.roles) == set(design.roles)
@@ -278,7 +288,7 @@ class SimulatorContract(ComponentContract[Simulator]):
     def test_bodies_of_the_same_shape_are_given_the_same_random_controller(self) -> None:
         """Whatever they are made of."""
         known: dict[str, np.ndarray] = {}
-        for design in self.designs() if can_draw(self.component) else []:
+        for design in self.designs() if isinstance(self.component, SupportsRandomControllers) else []:
             drawn = self._drawn(design, 1)
             shapes = repr(sorted((role, array.shape) for role, array in design.roles.items()))
             for role in sorted(set(drawn.roles) - self._kept(design)):
@@ -287,7 +297,10 @@ class SimulatorContract(ComponentContract[Simulator]):
 
     def test_published_bodies_can_be_simulated(self) -> None:
         """Each has a name of its own; they are the same every time."""
-        first, second = ([*self.component.published()] if can_publish(self.component) else [] for _ in "12")
+        first, second = (
+            [*self.component.published()] if isinstance(self.component, SupportsPublished) else []
+            for _ in "12"
+        )
         labels = [label for label, _ in first]
         assert all(isinstance(label, str) and label.strip() for label in labels)
         assert len(set(labels)) == len(labels), "two bodies have one name"
@@ -298,7 +311,7 @@ class SimulatorContract(ComponentContract[Simulator]):
             assert len(self._simulate([design])) == 1
 
     def _drawn(self, design: Design, seed: int) -> Design:
-        assert can_draw(self.component)
+        assert isinstance(self.component, SupportsRandomControllers)
         return self.component.random_controller(design, np.random.default_rng(seed))
 
     def _kept(self, design: Design) -> set[str]:
@@ -311,7 +324,11 @@ class SimulatorContract(ComponentContract[Simulator]):
         }
 
     def _variants(self, design: Design) -> Sequence[Variant]:
-        return self.component.variants(design, self.record()) if can_verify(self.component) else []
+        return (
+            self.component.variants(design, self.record())
+            if isinstance(self.component, SupportsVariants)
+            else []
+        )
 
     def _all(self) -> list[Design]:
         return [*self.designs(), *self.diverging()]

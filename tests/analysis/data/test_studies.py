@@ -7,7 +7,7 @@ from pathlib import Path
 
 import polars as pl
 
-from evoframe import Plugins, load_study
+from evoframe import Plugins, load_run, load_study
 from evoframe.study.conduct import claim
 from evoframe.study.plan import Planned, Study
 from evoframe.study.rows import row_of
@@ -24,7 +24,7 @@ def test_a_study_is_read_as_it_stands(
     before = sorted(path for path in there.rglob("*") if path.is_file())
     data = load_study(there, plugins=toy_plugins)
     assert sorted(path for path in there.rglob("*") if path.is_file()) == before
-    assert list(data.rows) == [row_of(run) for run in list(study.planned(there))[:3]]
+    assert list(data.rows) == [row_of(run, load_run(run.directory)) for run in list(study.planned(there))[:3]]
     assert (data.label, data.planned, data.unit) == ("there", 4, "")
     assert data.keys == ("collaboration.n", "simulator")
     views = data.views("score")

@@ -7,8 +7,7 @@ from itertools import pairwise
 import attrs
 import pytest
 from graphs import GRAPHS, NETWORKS
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from evoframe import NetworkGraph, NetworkLink
 from evoframe.analysis.figures.layered import effective, layered

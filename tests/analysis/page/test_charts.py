@@ -60,13 +60,13 @@ def test_the_lines_of_a_run_are_those_of_its_record(tmp_path: Path) -> None:
     made = run("quick", out=tmp_path / "r", run={"generations": 2})
     lines = {line.name: line.values for line in lines_of_run(made, "m")}
     for name in ("morphology", "controller"):
-        rows = [row for row in made.turns if row["population"] == name]
+        rows = [row for row in made.turns() if row["population"] == name]
         for what in ("best", "mean"):
             assert lines[f"{name}: {what} fitness"] == pytest.approx([1000 * row[what] for row in rows])
     best = lines["best pair simulated"]
     assert len(best) == 3
     assert (np.diff(best) >= 0).all()
-    assert best[-1] == pytest.approx(1000 * made.champion.score)
+    assert best[-1] == pytest.approx(1000 * made.champion().score)
 
 
 def test_long_names_are_broken_and_no_html() -> None:

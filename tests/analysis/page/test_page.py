@@ -13,8 +13,7 @@ import attrs
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from plotly.graph_objects import Figure, Scatter
 
 from evoframe import Geometry, GeometryPart

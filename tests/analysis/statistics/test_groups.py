@@ -8,8 +8,7 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
 from evoframe.analysis.statistics.corrections import CORRECTIONS
 from evoframe.analysis.statistics.groups import a12, compare, detectable_a12

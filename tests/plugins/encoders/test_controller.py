@@ -3,8 +3,7 @@ from typing import Any
 
 import numpy as np
 from drawing import network_of, point_of
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from hypothesis.extra import numpy as hnp
 
 from evoframe import Design

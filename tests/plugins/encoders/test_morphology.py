@@ -3,8 +3,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drawing import network_of, point_of
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from evoframe import Design
 from evoframe.testing import EncoderContract

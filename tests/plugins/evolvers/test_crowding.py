@@ -6,8 +6,7 @@ from typing import Any
 import neat
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from neat.reporting import ReporterSet
 from neat.species import Species
 

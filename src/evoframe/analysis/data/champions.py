@@ -10,8 +10,8 @@ import attrs
 from evoframe.analysis.data.geometries import checked
 from evoframe.contract.blame import blaming
 from evoframe.contract.config import RunConfig
-from evoframe.contract.drawings import Geometry, NetworkGraph, can_be_drawn
-from evoframe.contract.protocols import unit_of
+from evoframe.contract.drawings import Geometry, NetworkGraph
+from evoframe.contract.optional import SupportsGeometry, unit_of
 from evoframe.designs.sources import naming, read_job
 from evoframe.errors import InputError
 from evoframe.record.run import Run
@@ -75,20 +75,22 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
         raise InputError(f"{directory}: is no run's directory")
     simulator, objective = config.simulator.component, config.objective.component
     with naming(directory), blaming("simulator"):
-        geometry = checked(simulator.geometry(design, _FRAMES)) if can_be_drawn(simulator) else None
+        geometry = (
+            checked(simulator.geometry(design, _FRAMES)) if isinstance(simulator, SupportsGeometry) else None
+        )
     drawn = geometry.tracks if geometry else {}
     return ChampionData(
-        score=run.champion.score,
+        score=run.champion().score,
         unit=unit_of(objective),
         geometry=geometry,
         track=next((track for track in objective.record.tracks if track in drawn), None),
         networks=tuple(_networks(run, config)),
-        verification=run.verification,
+        verification=run.verification(),
     )
 
 
 def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
-    for name, genome in run.champion.genomes.items():
+    for name, genome in run.champion().genomes.items():
         population = config.populations.get(name)
         graph = getattr(population.evolver.component, "graph", None) if population else None
         if population is None or graph is None:

@@ -10,11 +10,10 @@ import attrs
 import pandas as pd
 
 from evoframe.analysis.statistics.groups import ranked
-from evoframe.contract.protocols import unit_of
+from evoframe.contract.optional import unit_of
+from evoframe.documents.trees import differences
 from evoframe.errors import InputError
-from evoframe.files.reading import is_file, read_text, shown_name
-from evoframe.record.champion import LARGEST_DOCUMENT
-from evoframe.record.provenance import differences
+from evoframe.files.reading import LARGEST_DOCUMENT, is_file, read_text, shown_name
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 from evoframe.study.conduct import STUDY_FILE, survey

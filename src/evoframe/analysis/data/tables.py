@@ -11,7 +11,7 @@ import pandas as pd
 from evoframe.analysis.data.studies import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.groups import Comparison, Group, compare, ranked
-from evoframe.record.provenance import leaves
+from evoframe.documents.trees import leaves
 from evoframe.record.verification import Verification
 
 __all__ = [

@@ -71,7 +71,7 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
         run: The run, finished or not.
         unit: Of scores; metres become millimetres.
     """
-    turns, factor = run.turns, factor_of(unit)
+    turns, factor = run.turns(), factor_of(unit)
     populations = list(run.config["populations"])
     drawn = []
     for number, population in enumerate(populations):

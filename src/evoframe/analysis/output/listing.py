@@ -10,8 +10,7 @@ from pathlib import Path
 
 from evoframe.analysis.output.writing import write_bytes
 from evoframe.errors import InputError, RunError
-from evoframe.files.reading import is_file, read_text
-from evoframe.record.champion import LARGEST_DOCUMENT
+from evoframe.files.reading import LARGEST_DOCUMENT, is_file, read_text
 
 __all__ = ["LIST_FILE", "listed", "settle"]
 

@@ -14,7 +14,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from evoframe.errors import InputError
-from evoframe.record.store import write_atomically
+from evoframe.files.writing import write_atomically
 
 __all__ = [
     "Rendered",

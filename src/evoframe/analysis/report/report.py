@@ -13,7 +13,7 @@ from evoframe.analysis.report.study_report import write_study_report
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.errors import InputError
 from evoframe.files.reading import is_file
-from evoframe.record.store import CONFIG_FILE
+from evoframe.record.layout import CONFIG_FILE
 from evoframe.registry.registry import Plugins
 from evoframe.robustness.files import SETTING_FILE
 from evoframe.study.conduct import STUDY_FILE

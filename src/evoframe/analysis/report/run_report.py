@@ -23,10 +23,9 @@ from evoframe.analysis.page.page import Chart, Section, Source, Table, page
 from evoframe.analysis.report.champion_report import DrawnChampion, champion_sections, drawn, write_champion
 from evoframe.analysis.robustness import robustness_part
 from evoframe.analysis.statistics.corrections import Correction
-from evoframe.files.reading import read_text, shown_name
-from evoframe.record.champion import LARGEST_DOCUMENT
+from evoframe.files.reading import LARGEST_DOCUMENT, read_text, shown_name
+from evoframe.record.layout import CONFIG_FILE
 from evoframe.record.run import Run, load_run
-from evoframe.record.store import CONFIG_FILE
 from evoframe.registry.registry import Plugins
 
 __all__ = ["write_run_report"]
@@ -80,19 +79,19 @@ def _sections(run: Run, champion: DrawnChampion, progress: Section) -> list[Sect
 
 
 def _lead(run: Run, champion: ChampionData) -> str:
-    work, score = run.workload, with_unit(champion.score, champion.unit)
+    work, score = run.workload(), with_unit(champion.score, champion.unit)
     pairs = sum(row["pairs"] for row in work)
-    state = "finished" if run.finished else "not finished yet"
+    state = "finished" if run.finished() else "not finished yet"
     return f"best pair {score}; {len(work) - 1:,} turns, {pairs:,} pairs; {state}"
 
 
 def _summary(run: Run, champion: ChampionData) -> pd.DataFrame:
     """Return the final figures, which are those of the last turn as long as the run goes on."""
-    last = {row["population"]: row for row in run.turns}
+    last = {row["population"]: row for row in run.turns()}
     figures = {"best pair": champion.score}
     for name in run.config["populations"]:
         figures[f"{name}: best fitness"] = last[name]["best"]
         figures[f"{name}: mean fitness"] = last[name]["mean"]
-    if run.finished:
-        figures["pair of the fittest"] = run.summary["fittest_pair_score"]
+    if run.finished():
+        figures["pair of the fittest"] = run.summary()["fittest_pair_score"]
     return pd.DataFrame({"figure": list(figures), f"value ({champion.unit or 1})": list(figures.values())})

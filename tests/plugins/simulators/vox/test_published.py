@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
-from evoframe import Design, InputError, robustness
+from evoframe import Design, InputError, measure_robustness
 from evoframe_simulators import Vox
 
 PAPER = Path(__file__).parents[3] / "data" / "paper_preset.npz"
@@ -32,7 +31,7 @@ def test_they_are_those_that_the_authors_engine_was_given() -> None:
 
 def test_their_medians_under_random_offsets_are_those_of_the_paper() -> None:
     """paper.md, "The simulation of one pair": measured there with 60 other offset sets."""
-    found = robustness(published=True, controllers=60)
+    found = measure_robustness(published=True, controllers=60)
     medians = dict(
         zip([body.label for body in found.setting.bodies], np.median(found.scores, axis=0), strict=True)
     )

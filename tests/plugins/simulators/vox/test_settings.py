@@ -9,8 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from evoframe import ConfigurationError, Design, InputError, Record, load_config
 from evoframe_simulators import FixedRegion, PaletteMaterial, Vox

@@ -1,0 +1,102 @@
+# Where each name of the public API is defined; read by type checkers, and by lazy_loader in __init__.py.
+
+from ._version import __version__ as __version__
+from .config.layers import Layer as Layer
+from .config.resolve import load_config as load_config
+from .contract.config import (
+    Chosen as Chosen,
+    PopulationConfig as PopulationConfig,
+    RunConfig as RunConfig,
+    RunSettings as RunSettings,
+    Source as Source,
+)
+from .contract.drawings import (
+    Geometry as Geometry,
+    GeometryPart as GeometryPart,
+    NetworkGraph as NetworkGraph,
+    NetworkLink as NetworkLink,
+)
+from .contract.optional import (
+    SupportsExport as SupportsExport,
+    SupportsGeometry as SupportsGeometry,
+    SupportsGraph as SupportsGraph,
+    SupportsInputNames as SupportsInputNames,
+    SupportsOutputNames as SupportsOutputNames,
+    SupportsProvenance as SupportsProvenance,
+    SupportsPublished as SupportsPublished,
+    SupportsRandomControllers as SupportsRandomControllers,
+    SupportsReading as SupportsReading,
+    SupportsSettings as SupportsSettings,
+    SupportsUnit as SupportsUnit,
+    SupportsVariants as SupportsVariants,
+    Variant as Variant,
+)
+from .contract.protocols import (
+    Aggregator as Aggregator,
+    CollaborationStrategy as CollaborationStrategy,
+    Encoder as Encoder,
+    Evolver as Evolver,
+    EvolverRun as EvolverRun,
+    Executor as Executor,
+    ExecutorRun as ExecutorRun,
+    Network as Network,
+    Objective as Objective,
+    Simulator as Simulator,
+)
+from .contract.values import (
+    BestPair as BestPair,
+    Design as Design,
+    Export as Export,
+    Member as Member,
+    Outcome as Outcome,
+    Pair as Pair,
+    PopulationReport as PopulationReport,
+    Record as Record,
+    Score as Score,
+    Scores as Scores,
+    Turn as Turn,
+    Workload as Workload,
+)
+from .contract.voxels import (
+    CONTRACTILE as CONTRACTILE,
+    CONTROLLER as CONTROLLER,
+    EMPTY as EMPTY,
+    MORPHOLOGY as MORPHOLOGY,
+    PASSIVE as PASSIVE,
+)
+from .designs.verifying import verify as verify
+from .documents.structuring import StructureError as StructureError, structure as structure
+from .errors import (
+    ConfigurationError as ConfigurationError,
+    EvoframeError as EvoframeError,
+    InputError as InputError,
+    PluginError as PluginError,
+    PluginWarning as PluginWarning,
+    RunError as RunError,
+    WorkerError as WorkerError,
+)
+from .evolution.assembly import assemble as assemble
+from .evolution.coevolution import Coevolution as Coevolution
+from .evolution.evaluation import Evaluator as Evaluator
+from .evolution.population import Population as Population
+from .messages import suggestion as suggestion
+from .notebook import load_study as load_study
+from .record.champion import Champion as Champion
+from .record.run import Run as Run, load_run as load_run, open_run as open_run
+from .record.verification import Finding as Finding, Verification as Verification
+from .registry.discovery import discover as discover
+from .registry.hookspecs import hookimpl as hookimpl
+from .registry.registry import Plugins as Plugins
+from .robustness.api import measure_robustness as measure_robustness
+from .robustness.measurement import (
+    Body as Body,
+    Divergence as Divergence,
+    Robustness as Robustness,
+    Setting as Setting,
+)
+from .runs.resuming import resume as resume
+from .runs.starting import run as run
+from .workers.cores import available_cores as available_cores
+from .workers.processes import WorkerProcesses as WorkerProcesses
+
+__all__: list[str]

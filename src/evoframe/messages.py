@@ -1,0 +1,43 @@
+"""Parts of messages that a person reads, shared by all rooms."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable
+from typing import Any
+
+from evoframe.errors import EvoframeError
+
+__all__ = ["cause_of", "found", "full_text", "suggestion"]
+
+
+def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
+    """Return how a message about an unknown *word* ends.
+
+    Args:
+        word: What was written.
+        known: What could have been meant.
+        label: What to call a list of all that is known; without it there is none.
+    """
+    words = list(known)
+    close = difflib.get_close_matches(word, words, n=1, cutoff=0.5)
+    meant = f"; did you mean '{close[0]}'?" if close else ""
+    listed = f"{'' if meant else ';'} {label}: {', '.join(words) or 'none'}" if label else ""
+    return meant + listed
+
+
+def found(value: Any) -> str:
+    """Return *value* as a person wrote it."""
+    return json.dumps(value, default=str, ensure_ascii=False)
+
+
+def full_text(error: BaseException) -> str:
+    """Return the text of an error with the hints that were added to it (:meth:`BaseException.add_note`)."""
+    return "\n  ".join([str(error), *getattr(error, "__notes__", ())])
+
+
+def cause_of(error: BaseException) -> str:
+    """Return the text of an error as a cause, with the type in front unless it is meant for a person."""
+    text = full_text(error)
+    return text if isinstance(error, EvoframeError) else f"{type(error).__name__}: {text}"
