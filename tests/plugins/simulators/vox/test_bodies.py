@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 
 from evoframe import InputError
 from evoframe_simulators import Vox
+from evoframe_simulators.vox import materials_of
 from evoframe_simulators.vox.bodies import read_bodies
-from evoframe_simulators.vox.materials import materials_of
 
 GOLDEN = Path(__file__).parents[3] / "data" / "paper_preset.npz"
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from evoframe import ConfigurationError, Design, InputError, Record, load_config
 from evoframe_simulators import FixedRegion, PaletteMaterial, Vox
-from evoframe_simulators.vox.materials import materials_of
+from evoframe_simulators.vox import materials_of
 from evoframe_simulators.vox.models import possible_clocks
 from evoframe_simulators.vox.regions import DEGREES_OF_FREEDOM, fixed_mask
 

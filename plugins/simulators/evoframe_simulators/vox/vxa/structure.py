@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import InputError
-from evoframe_simulators.vox.bodies import MOST_CELLS, check_cycles
+from evoframe_simulators.vox.bodies import check_cycles
+from evoframe_simulators.vox.limits import MOST_CELLS
 from evoframe_simulators.vox.vxa.document import shown
 from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
 from evoframe_simulators.vox.vxa.sections import Section, number_in
