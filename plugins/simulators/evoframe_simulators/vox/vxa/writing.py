@@ -6,6 +6,7 @@ have all their digits, so that what is read again is what was written.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape  # that of xml.sax imports half the network
 from typing import Any
@@ -78,7 +79,7 @@ def write_vxa(
     usable = (material > 0) & np.isfinite(phase_cycles)
     lines = [
         *_node("Simulator", _simulator(settings)),
-        *_node("Environment", _environment(settings, _fixed(settings, material.shape))),
+        *_node("Environment", _environment(settings, material.shape)),
         *_node("VXC", _vxc(settings, material, np.where(usable, phase_cycles, 0.0)), Version="0.93"),
     ]
     head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
@@ -139,16 +140,12 @@ def _simulator(settings: VoxSettings) -> Iterator[str]:
     yield from _values({"MinTempFact": 0.1, **CHANGES})
 
 
-def _fixed(settings: VoxSettings, canvas: tuple[int, ...]) -> list[FixedRegion]:
-    """Return the regions that hold a cell, each so that it holds the same cells in the engine."""
+def _environment(settings: VoxSettings, canvas: tuple[int, ...]) -> Iterator[str]:
     x, y, z = canvas
     held = [as_vox_holds(region, (x, y, z)) for region in settings.fixed]
-    return [region for region in held if region is not None]
-
-
-def _environment(settings: VoxSettings, fixed: list[FixedRegion]) -> Iterator[str]:
-    regions = [line for region in fixed for line in _section("FRegion", _region(region))]
-    yield from _node("Boundary_Conditions", [*_values({"NumBCs": len(fixed)}), *regions])
+    regions = [_section("FRegion", _region(region)) for region in held if region is not None]
+    count = _values({"NumBCs": len(regions)})
+    yield from _node("Boundary_Conditions", itertools.chain(count, *regions))
     gravity = {
         "GravEnabled": settings.gravity != 0.0,
         "GravAcc": settings.gravity,
