@@ -74,12 +74,12 @@ def read_bodies(
     """
     with naming(path), open_npz(path, ("material", "phase_cycles")) as (material, phase):
         _check_headers(material, phase)
-        cells = material.unpack()
-        check_codes(cells, materials)
-        without = np.flatnonzero(~cells.any(axis=(-3, -2, -1)))
+        codes = material.unpack()
+        check_codes(codes, materials)
+        without = np.flatnonzero(~codes.any(axis=(-3, -2, -1)))
         if without.size:
             raise InputError(f"material: body {without[0]} has no voxel")
-        codes = cells.astype(np.uint8)
+        codes = codes.astype(np.uint8)
         with np.errstate(all="ignore"):  # what double precision cannot hold becomes infinite
             cycles: NDArray[np.float64] = phase.unpack().astype(np.float64)
         check_cycles(cycles, "phase_cycles")

@@ -29,7 +29,7 @@ _VERSIONS = ("", "0.93", "0.94")  # of the section VXC; the structure of others 
 _HORIZON_SYSTEMS = (2, 3)  # one and the same in the engine, whose choice of all voxels is never taken
 _PERIODS = 3  # of the temperature, whether it varies or not
 _DURATIONS = (2, _PERIODS)
-_MOST_STEPS = 10**12
+_MOST_COUNTED_STEPS = 10**12
 
 
 def read_vxa(path: Path) -> VxaFile:
@@ -112,9 +112,9 @@ def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple
     kind = section.whole("StopConditionType", 0, most=6)
     if kind == 1:  # which the engine rounds, and exceeds by one step
         counted = section.number("StopConditionValue", 0.0, least=0.0)
-        if counted > _MOST_STEPS:
+        if counted > _MOST_COUNTED_STEPS:
             raise InputError(
-                f"{section.at('StopConditionValue')}: {counted:g} steps; at most {_MOST_STEPS:g}"
+                f"{section.at('StopConditionValue')}: {counted:g} steps; at most {_MOST_COUNTED_STEPS:g}"
             )
         return {"start_time": start}, math.floor(counted + 0.5) + 1
     if kind not in _DURATIONS:
