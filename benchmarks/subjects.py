@@ -16,9 +16,7 @@ from benchmarks.timing import Action
 from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, PASSIVE, Design, Encoder, Network, Objective
 from evoframe_evolvers import RandomSearch
 from evoframe_libvox import Model
-from evoframe_simulators.vox.models import clocks_of, model_of
-from evoframe_simulators.vox.regions import fixed_mask
-from evoframe_simulators.vox.simulator import Vox
+from evoframe_simulators.vox import Vox, clocks_of, fixed_mask, model_of
 
 __all__ = [
     "bonds_of",

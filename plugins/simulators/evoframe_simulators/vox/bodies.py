@@ -11,15 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import CONTROLLER, EMPTY, MORPHOLOGY, Design, InputError
+from evoframe_simulators.files import naming
 from evoframe_simulators.npz import PackedArray, open_npz
+from evoframe_simulators.vox.limits import MOST_CELLS, MOST_CYCLES
 from evoframe_simulators.vox.materials import PaletteMaterial, described
 
-__all__ = ["MOST_CELLS", "check_codes", "check_cycles", "check_design", "read_bodies"]
-
-MOST_CELLS = 2**24
-"""Of a canvas; more would not fit into the solver, either."""
-
-_MOST_CYCLES = 1e6  # beyond, single precision knows no fraction of a cycle
+__all__ = ["check_codes", "check_cycles", "check_design", "read_bodies"]
 
 
 def check_design(design: Design) -> None:
@@ -59,8 +56,8 @@ def check_cycles(cycles: NDArray[np.float64], name: str) -> None:
     if not np.isfinite(cycles).all():
         raise InputError(f"{name} has a value that is not finite")
     largest = float(np.abs(cycles).max(initial=0.0))
-    if largest > _MOST_CYCLES:
-        raise InputError(f"{name} has the value {largest:g}; at most {_MOST_CYCLES:g} cycles")
+    if largest > MOST_CYCLES:
+        raise InputError(f"{name} has the value {largest:g}; at most {MOST_CYCLES:g} cycles")
 
 
 def read_bodies(
@@ -75,21 +72,24 @@ def read_bodies(
     Raises:
         InputError: The file cannot be read, or its arrays are not bodies; says what is wrong.
     """
-    try:
-        with open_npz(path, ("material", "phase_cycles")) as (material, phase):
-            _check_material(material)
-            _check_phase(phase, material.shape)
-            codes, cycles = _codes(material.unpack(), materials), _cycles(phase.unpack())
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+    with naming(path), open_npz(path, ("material", "phase_cycles")) as (material, phase):
+        _check_headers(material, phase)
+        codes = material.unpack()
+        check_codes(codes, materials)
+        without = np.flatnonzero(~codes.any(axis=(-3, -2, -1)))
+        if without.size:
+            raise InputError(f"material: body {without[0]} has no voxel")
+        codes = codes.astype(np.uint8)
+        with np.errstate(all="ignore"):  # what double precision cannot hold becomes infinite
+            cycles: NDArray[np.float64] = phase.unpack().astype(np.float64)
+        check_cycles(cycles, "phase_cycles")
     if codes.ndim == 3:
         return [(path.name, codes, cycles)]
     return [(f"{path.name}[{n}]", *body) for n, body in enumerate(zip(codes, cycles, strict=True))]
 
 
-def _check_material(material: PackedArray) -> None:
+def _check_headers(material: PackedArray, phase: PackedArray) -> None:
+    """Refuse arrays that cannot be bodies, before they are unpacked."""
     shape = list(material.shape)
     if len(shape) not in (3, 4) or min(shape) < 1:
         raise InputError(f"material has the shape {shape}; expected [X, Y, Z] or [N, X, Y, Z]")
@@ -97,25 +97,7 @@ def _check_material(material: PackedArray) -> None:
         raise InputError(f"material has the shape {shape}, {math.prod(shape)} cells; at most {MOST_CELLS}")
     if material.dtype.kind not in "ui":
         raise InputError(f"material has the type {material.dtype}; expected whole numbers")
-
-
-def _check_phase(phase: PackedArray, shape: tuple[int, ...]) -> None:
-    if phase.shape != shape:
-        raise InputError(f"phase_cycles has the shape {list(phase.shape)}, but material has {list(shape)}")
+    if phase.shape != material.shape:
+        raise InputError(f"phase_cycles has the shape {list(phase.shape)}, but material has {shape}")
     if phase.dtype.kind not in "uif":
         raise InputError(f"phase_cycles has the type {phase.dtype}; expected numbers")
-
-
-def _codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]) -> NDArray[np.uint8]:
-    check_codes(material, materials)
-    without = np.flatnonzero(~material.any(axis=(-3, -2, -1)))
-    if without.size:
-        raise InputError(f"material: body {without[0]} has no voxel")
-    return material.astype(np.uint8)
-
-
-def _cycles(phase: NDArray[Any]) -> NDArray[np.float64]:
-    with np.errstate(all="ignore"):  # what double precision cannot hold becomes infinite
-        cycles: NDArray[np.float64] = phase.astype(np.float64)
-    check_cycles(cycles, "phase_cycles")
-    return cycles

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe import EMPTY, MORPHOLOGY, Design, Geometry, GeometryPart, InputError, Outcome, Record
+from evoframe import EMPTY, MORPHOLOGY, Design, Geometry, GeometryPart, InputError, Record
 from evoframe_simulators.vox.bodies import check_codes, check_design
-from evoframe_simulators.vox.materials import PaletteMaterial, materials_of
-from evoframe_simulators.vox.models import clocks_of, model_of
+from evoframe_simulators.vox.materials import PaletteMaterial
+from evoframe_simulators.vox.models import clock_of
+from evoframe_simulators.vox.settings import VoxSettings, materials_of
+from evoframe_simulators.vox.simulation import simulate
 from evoframe_simulators.vox.tracks import POINTS
 
-if TYPE_CHECKING:
-    from evoframe_simulators.vox.simulator import Vox
-
-__all__ = ["geometry"]
+__all__ = ["geometry_of"]
 
 # Red contracts and blue does not: of the vibrant colours of Paul Tol, made for eyes of all kinds.
 _CONTRACTILE = ("#CC3311", "#EE3377", "#EE7733")
@@ -29,7 +27,7 @@ _SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))  # counter-clockwise
 Cells = NDArray[np.bool_]
 
 
-def geometry(vox: Vox, design: Design, frames: int) -> Geometry:
+def geometry_of(settings: VoxSettings, design: Design, frames: int) -> Geometry:
     """Return the surfaces of a body: one part for each material, and for an enclosure if there is one.
 
     Voxels are drawn as cubes at rest. Later a corner is displaced by the mean displacement of the voxels
@@ -37,7 +35,7 @@ def geometry(vox: Vox, design: Design, frames: int) -> Geometry:
     enclosure is an outermost layer of the canvas that is of one passive material throughout.
 
     Args:
-        vox: Simulates the body.
+        settings: They simulate the body.
         design: The body with its controller.
         frames: How many at most; they are as evenly spread over the steps as these allow.
 
@@ -49,27 +47,20 @@ def geometry(vox: Vox, design: Design, frames: int) -> Geometry:
         raise ValueError(f"expected 1 frame or more, found {frames}")
     check_design(design)
     material = design.roles[MORPHOLOGY]
-    check_codes(material, materials_of(vox))
+    check_codes(material, materials_of(settings))
     if not material.any():
         raise InputError("morphology has no voxel, so there is nothing to draw")
-    outcome = _simulated(vox, design, frames)
+    last = clock_of(settings, material).steps
+    steps = np.linspace(0, last, frames).round().astype(int) if frames > 1 else np.zeros(1, int)
+    samples = tuple(np.unique(steps[steps > 0] - 1).tolist())
+    [outcome] = simulate(settings, [design], Record(("voxels", *POINTS), samples=samples, initial=True))
     sound = outcome.steps < (np.inf if outcome.diverged_at is None else outcome.diverged_at)
-    corners = _corners(outcome.tracks["voxels"][sound], vox.voxel_size)
+    corners = _corners(outcome.tracks["voxels"][sound], settings.voxel_size)
     return Geometry(
         times=outcome.times[sound],
-        parts=tuple(_parts(material, materials_of(vox), corners)),
+        parts=tuple(_parts(material, materials_of(settings), corners)),
         tracks={name: outcome.tracks[name][sound] for name in POINTS},
     )
-
-
-def _simulated(vox: Vox, design: Design, frames: int) -> Outcome:
-    material = design.roles[MORPHOLOGY]
-    x, y, z = material.shape
-    [clock] = clocks_of(vox, model_of(vox, (x, y, z)), material[None])
-    steps = np.linspace(0, clock.steps, frames).round().astype(int) if frames > 1 else np.zeros(1, int)
-    samples = tuple(np.unique(steps[steps > 0] - 1).tolist())
-    [outcome] = vox.simulate([design], Record(("voxels", *POINTS), samples=samples, initial=True))
-    return outcome
 
 
 def _corners(voxels: NDArray[np.float64], size: float) -> NDArray[np.float64]:
@@ -133,16 +124,12 @@ def _faces(cells: Cells, hiding: Cells) -> NDArray[np.int64]:
     for axis in range(3):
         for side in (0, 1):
             beside = np.roll(padded, 1 - 2 * side, axis)[1:-1, 1:-1, 1:-1]
-            at = np.argwhere(cells & ~beside)
-            square = [np.insert(offset, axis, side) for offset in _around(axis)]
-            quads = np.stack([corners[tuple((at + offset).T)] for offset in square], axis=1)
+            visible = np.argwhere(cells & ~beside)
+            # Across y the other two axes change places, so that the order stays counter-clockwise.
+            square = [np.insert(at[::-1] if axis == 1 else at, axis, side) for at in _SQUARE]
+            quads = np.stack([corners[tuple((visible + offset).T)] for offset in square], axis=1)
             found.append(quads if side else quads[:, ::-1])
     return np.concatenate(found)
-
-
-def _around(axis: int) -> list[tuple[int, int]]:
-    """Return the corners of a face across an axis, counter-clockwise as seen from its greater side."""
-    return [(second, first) if axis == 1 else (first, second) for first, second in _SQUARE]
 
 
 def _part(

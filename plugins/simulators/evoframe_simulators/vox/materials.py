@@ -3,34 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
-from attrs import validators
 
 import evoframe_libvox as libvox
-from evoframe import CONTRACTILE, EMPTY, PASSIVE
-
-if TYPE_CHECKING:
-    from evoframe_simulators.vox.simulator import Vox
-
-__all__ = ["PaletteMaterial", "check_palette", "described", "materials_of", "single", "solver_palette"]
-
-_LARGEST_CODE = 255
-_POSITIVE = validators.gt(0.0)
-_NOT_NEGATIVE = validators.ge(0.0)
-
-# Options of vox that describe its two built-in materials, and so say nothing of a palette.
-_BUILT_IN = (
-    *("youngs_modulus", "poisson_ratio", "density", "expansion_coefficient"),
-    *("static_friction", "dynamic_friction"),
+from evoframe import EMPTY
+from evoframe_simulators.vox.limits import (
+    LARGEST_CODE,
+    NOT_NEGATIVE,
+    POISSON_RATIO,
+    POSITIVE,
+    check_printable,
+    within,
 )
 
-
-def _check_name(_: Any, attribute: attrs.Attribute[str], value: str) -> None:
-    if not value.isprintable():
-        raise ValueError(f"'{attribute.name}' must be one line of printable characters: {value!r}")
+__all__ = ["PaletteMaterial", "check_palette", "described", "single", "solver_palette"]
 
 
 @attrs.frozen
@@ -49,14 +38,14 @@ class PaletteMaterial:
         name: For people.
     """
 
-    code: int = attrs.field(validator=[validators.ge(1), validators.le(_LARGEST_CODE)])
-    youngs_modulus: float = attrs.field(validator=_POSITIVE)
-    poisson_ratio: float = attrs.field(validator=[validators.ge(0.0), validators.lt(0.5)])
-    density: float = attrs.field(validator=_POSITIVE)
+    code: int = attrs.field(validator=within(1, LARGEST_CODE))
+    youngs_modulus: float = attrs.field(validator=POSITIVE)
+    poisson_ratio: float = attrs.field(validator=POISSON_RATIO)
+    density: float = attrs.field(validator=POSITIVE)
     expansion_coefficient: float
-    static_friction: float = attrs.field(default=1.0, validator=_NOT_NEGATIVE)
-    dynamic_friction: float = attrs.field(default=0.5, validator=_NOT_NEGATIVE)
-    name: str = attrs.field(default="", validator=_check_name)
+    static_friction: float = attrs.field(default=1.0, validator=NOT_NEGATIVE)
+    dynamic_friction: float = attrs.field(default=0.5, validator=NOT_NEGATIVE)
+    name: str = attrs.field(default="", validator=check_printable)
 
 
 def check_palette(_: Any, __: Any, palette: Sequence[PaletteMaterial]) -> None:
@@ -69,18 +58,6 @@ def check_palette(_: Any, __: Any, palette: Sequence[PaletteMaterial]) -> None:
     for code in codes:
         if codes.count(code) > 1:
             raise ValueError(f"expected one material for each code, found {codes.count(code)} for {code}")
-
-
-def materials_of(vox: Vox) -> dict[int, PaletteMaterial]:
-    """Return the material of each code that a body may have."""
-    if vox.palette:
-        return {material.code: material for material in vox.palette}
-    options = {name: getattr(vox, name) for name in _BUILT_IN}
-    passive = {**options, "expansion_coefficient": 0.0}
-    return {
-        PASSIVE: PaletteMaterial(code=PASSIVE, name="passive", **passive),
-        CONTRACTILE: PaletteMaterial(code=CONTRACTILE, name="contractile", **options),
-    }
 
 
 def described(materials: Mapping[int, PaletteMaterial]) -> str:

@@ -1,102 +1,120 @@
-"""The solver's models of a simulator's settings."""
+"""The solver's models of settings, and the clocks of bodies in them."""
 
 from __future__ import annotations
 
 import functools
 import itertools
-from typing import TYPE_CHECKING
+import math
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
 import evoframe_libvox as libvox
-from evoframe_simulators.vox.materials import materials_of, single, solver_palette
+from evoframe_simulators.vox.materials import solver_palette
 from evoframe_simulators.vox.regions import fixed_mask
 from evoframe_simulators.vox.sampling import Clock
-
-if TYPE_CHECKING:
-    from evoframe_simulators.vox.simulator import Vox
+from evoframe_simulators.vox.settings import VoxSettings, amplitude_of, materials_of, period_of
 
 __all__ = [
     "acting_codes",
-    "amplitude_of",
     "clock_of",
     "clocks_of",
     "model_of",
     "possible_clocks",
+    "time_step_of",
     "without_number",
 ]
 
 _UNLIMITED = 2**63 - 1
+_INSTANT = math.ulp(0.0)  # s; a time step of any length fits
+
+Canvas = tuple[int, int, int]
 
 
 @functools.lru_cache(maxsize=16)
-def model_of(vox: Vox, canvas: tuple[int, int, int]) -> libvox.Model:
+def model_of(settings: VoxSettings, canvas: Canvas) -> libvox.Model:
     """Return the model of settings on a canvas; it is read-only, so threads share it.
 
     Raises:
         ValueError: The solver cannot work with the settings; says what is wrong.
     """
-    return libvox.Model(
-        canvas, solver_palette(materials_of(vox)), _settings(vox), fixed_mask(vox.fixed, canvas)
-    )
+    palette = solver_palette(materials_of(settings))
+    return libvox.Model(canvas, palette, _solver_settings(settings), fixed_mask(settings.fixed, canvas))
 
 
 @functools.lru_cache(maxsize=16)
-def acting_codes(vox: Vox) -> NDArray[np.bool_]:
+def acting_codes(settings: VoxSettings) -> NDArray[np.bool_]:
     """Return of each code whether the offsets change the size of its voxels, ``bool[256]``, read-only."""
     acting = np.zeros(256, np.bool_)
-    if amplitude_of(vox) != 0.0:
-        for code, material in materials_of(vox).items():
+    if amplitude_of(settings) != 0.0:
+        for code, material in materials_of(settings).items():
             acting[code] = material.expansion_coefficient != 0.0
     acting.setflags(write=False)
     return acting
 
 
-@functools.lru_cache(maxsize=8)  # the bodies that meet many controllers just now
-def clock_of(vox: Vox, canvas: tuple[int, int, int], cells: bytes) -> Clock:
-    """Return the clock of a body that is given by the bytes of its material codes.
+def clock_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Clock:
+    """Return the clock of a body, ``uint8[X, Y, Z]``.
 
     Raises:
         ValueError: It cannot be simulated; says why.
     """
-    [clock] = clocks_of(vox, model_of(vox, canvas), np.frombuffer(cells, np.uint8).reshape(1, *canvas))
+    x, y, z = material.shape
+    return _clock(settings, (x, y, z), material.tobytes())
+
+
+@functools.lru_cache(maxsize=8)  # the bodies that meet many controllers just now
+def _clock(settings: VoxSettings, canvas: Canvas, cells: bytes) -> Clock:
+    material = np.frombuffer(cells, np.uint8).reshape(1, *canvas)
+    [clock] = clocks_of(settings, model_of(settings, canvas), material)
     return clock
 
 
-def clocks_of(vox: Vox, model: libvox.Model, material: NDArray[np.uint8]) -> list[Clock]:
+def clocks_of(settings: VoxSettings, model: libvox.Model, material: NDArray[np.uint8]) -> list[Clock]:
     """Return the clock of each body, ``uint8[N, X, Y, Z]``.
 
     Raises:
         ValueError: A body cannot be simulated; says why and which.
     """
     time_steps, steps = model.time_steps(material)
-    return [Clock(*clock, vox.substeps) for clock in zip(time_steps.tolist(), steps.tolist(), strict=True)]
+    return [
+        Clock(time_step, total, settings.substeps)
+        for time_step, total in zip(time_steps.tolist(), steps.tolist(), strict=True)
+    ]
 
 
-def possible_clocks(vox: Vox) -> list[Clock]:
+def time_step_of(settings: VoxSettings, material: NDArray[np.uint8]) -> float:
+    """Return the time step of a body, ``uint8[X, Y, Z]``, in s; the duration does not matter.
+
+    Raises:
+        ValueError: The solver cannot work with the settings or the body; says why.
+    """
+    return clock_of(attrs.evolve(settings, duration=_INSTANT), material).time_step
+
+
+def possible_clocks(settings: VoxSettings) -> list[Clock]:
     """Return every clock that a body can have: that of one pair of materials, or of one that has no bond.
 
     Raises:
         ValueError: The solver cannot work with the settings, or no body with a bond is done within the limit
             of steps; says what is wrong.
     """
-    palette = solver_palette(materials_of(vox))
+    palette = solver_palette(materials_of(settings))
     distinct = sorted({material: code for code, material in palette.items()}.values())
     bars = list(itertools.combinations_with_replacement(distinct, 2))
     bodies = np.array([*bars, *((0, code) for code in distinct)], np.uint8).reshape(-1, 2, 1, 1)
-    unlimited = attrs.evolve(_settings(vox), step_limit=_UNLIMITED)
+    unlimited = attrs.evolve(_solver_settings(settings), step_limit=_UNLIMITED)
     free = libvox.Model((2, 1, 1), palette, unlimited, np.zeros((2, 1, 1), np.uint8))
     try:
-        clocks = clocks_of(vox, free, bodies)
+        clocks = clocks_of(settings, free, bodies)
     except ValueError as error:
         raise ValueError(without_number(error)) from error
     fewest = min(clock.steps for clock in clocks[: len(bars)])
-    if fewest > vox.step_limit:
+    if fewest > settings.step_limit:
         raise ValueError(
-            f"duration = {vox.duration} s takes {fewest} steps, more than step_limit = {vox.step_limit}; "
-            "simulate less time, or raise the limit"
+            f"duration = {settings.duration} s takes {fewest} steps, "
+            f"more than step_limit = {settings.step_limit}; simulate less time, or raise the limit"
         )
     return clocks
 
@@ -106,38 +124,30 @@ def without_number(error: Exception) -> str:
     return str(error).partition(" (body ")[0]
 
 
-def amplitude_of(vox: Vox) -> float:
-    """Return the amplitude of the temperature's swing, degrees.
-
-    The engine holds it in single precision (physics.md, section 1): without, 4e-11 m are lost.
-    """
-    return single(vox.temperature_amplitude - vox.temperature_base)
-
-
-def _settings(vox: Vox) -> libvox.Settings:
+def _solver_settings(settings: VoxSettings) -> libvox.Settings:
     return libvox.Settings(
-        voxel_size=vox.voxel_size,
-        duration=vox.duration,
-        time_step_fraction=vox.time_step_fraction,
-        substeps=vox.substeps,
-        step_limit=vox.step_limit,
-        temperature_amplitude=amplitude_of(vox),
-        period=single(1 / vox.frequency),
-        start_time=vox.start_time,
-        ramp=vox.ramp,
-        gravity=vox.gravity,
-        floor=vox.floor,
-        floor_slope=vox.floor_slope,
-        fluid_drag=vox.fluid_drag,
-        bond_damping=vox.bond_damping,
-        slow_damping=vox.slow_damping,
-        floor_damping=vox.collision_damping,
-        contact_damping=vox.contact_damping,
-        self_collision=vox.self_collision,
-        contact_friction=vox.contact_friction,
-        complete_contacts=vox.complete_contacts,
-        collision_envelope=vox.collision_envelope,
-        collision_horizon=vox.collision_horizon,
-        largest_strain=vox.largest_strain,
-        largest_distance=vox.largest_distance,
+        voxel_size=settings.voxel_size,
+        duration=settings.duration,
+        time_step_fraction=settings.time_step_fraction,
+        substeps=settings.substeps,
+        step_limit=settings.step_limit,
+        temperature_amplitude=amplitude_of(settings),
+        period=period_of(settings),
+        start_time=settings.start_time,
+        ramp=settings.ramp,
+        gravity=settings.gravity,
+        floor=settings.floor,
+        floor_slope=settings.floor_slope,
+        fluid_drag=settings.fluid_drag,
+        bond_damping=settings.bond_damping,
+        slow_damping=settings.slow_damping,
+        floor_damping=settings.collision_damping,
+        contact_damping=settings.contact_damping,
+        self_collision=settings.self_collision,
+        contact_friction=settings.contact_friction,
+        complete_contacts=settings.complete_contacts,
+        collision_envelope=settings.collision_envelope,
+        collision_horizon=settings.collision_horizon,
+        largest_strain=settings.largest_strain,
+        largest_distance=settings.largest_distance,
     )

@@ -23,9 +23,8 @@ def published_bodies() -> dict[str, NDArray[np.uint8]]:
     text = files("evoframe_simulators.vox").joinpath("published_sams.json").read_text(encoding="utf-8")
     document = json.loads(text)
     x, y, z = document["canvas"]
-    return {label: _material(layers, (z, y, x)) for label, layers in document["sams"].items()}
-
-
-def _material(layers: list[str], shape: tuple[int, int, int]) -> NDArray[np.uint8]:
-    codes = np.array([int(code) for layer in layers for code in layer], dtype=np.uint8)
-    return np.ascontiguousarray(codes.reshape(shape).T)
+    bodies = {}
+    for label, layers in document["sams"].items():
+        codes = np.array([int(code) for layer in layers for code in layer], dtype=np.uint8)
+        bodies[label] = np.ascontiguousarray(codes.reshape(z, y, x).T)
+    return bodies

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Any, Literal, get_args
+from collections.abc import Iterable
+from typing import Literal, get_args
 
 import attrs
 import numpy as np
 from attrs import validators
 from numpy.typing import NDArray
+
+from evoframe_simulators.vox.limits import NOT_NEGATIVE, check_distinct, check_finite
 
 __all__ = ["DEGREES_OF_FREEDOM", "DegreeOfFreedom", "FixedRegion", "fixed_mask", "overlapping"]
 
@@ -16,16 +18,6 @@ DegreeOfFreedom = Literal["x", "y", "z", "rx", "ry", "rz"]
 
 DEGREES_OF_FREEDOM: tuple[DegreeOfFreedom, ...] = get_args(DegreeOfFreedom)
 """In the order of their bits, the lowest first: the position along each axis, and the rotation about it."""
-
-
-def _check_finite(_: Any, attribute: attrs.Attribute[Any], value: Sequence[float]) -> None:
-    if not np.isfinite(value).all():
-        raise ValueError(f"'{attribute.name}' must be finite: {list(value)}")
-
-
-def _check_distinct(_: Any, attribute: attrs.Attribute[Any], value: Sequence[str]) -> None:
-    if len(set(value)) < len(value):
-        raise ValueError(f"'{attribute.name}' must have each one once: {list(value)}")
 
 
 @attrs.frozen
@@ -39,13 +31,13 @@ class FixedRegion:
             the rotations about the axes of the world.
     """
 
-    origin: tuple[float, float, float] = attrs.field(default=(0.0, 0.0, 0.0), validator=_check_finite)
+    origin: tuple[float, float, float] = attrs.field(default=(0.0, 0.0, 0.0), validator=check_finite)
     size: tuple[float, float, float] = attrs.field(
-        default=(0.001, 1.0, 1.0), validator=[validators.deep_iterable(validators.ge(0.0)), _check_finite]
+        default=(0.001, 1.0, 1.0), validator=[validators.deep_iterable(NOT_NEGATIVE), check_finite]
     )
     degrees_of_freedom: tuple[DegreeOfFreedom, ...] = attrs.field(
         default=DEGREES_OF_FREEDOM,
-        validator=[validators.deep_iterable(validators.in_(DEGREES_OF_FREEDOM)), _check_distinct],
+        validator=[validators.deep_iterable(validators.in_(DEGREES_OF_FREEDOM)), check_distinct],
     )
 
     @property

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import ConfigurationError, Record
+from evoframe_simulators.vox.limits import MOST_STEPS
 
 __all__ = ["Clock", "check_samples"]
 
 _ROUNDING = 1e-12  # relative; an interval that is a multiple of the time step is met, not missed
-_MOST_STEPS = 2**53  # of any simulation
 
 
 @attrs.frozen
@@ -75,7 +75,7 @@ class Clock:
     def _stride(self, every: float) -> int:
         """Return the nominal steps from a sample to the next, the first that ends *every* seconds later."""
         steps = every / (self.time_step * self.substeps)
-        return max(1, math.ceil(min(steps * (1 - _ROUNDING), _MOST_STEPS)))
+        return max(1, math.ceil(min(steps * (1 - _ROUNDING), MOST_STEPS)))
 
 
 def check_samples(record: Record, clocks: Sequence[Clock], duration: float) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import evoframe_libvox as libvox
 from evoframe import ConfigurationError, InputError
+from evoframe_simulators.vox.limits import MOST_RECORD_BYTES
 
 __all__ = ["FURTHER", "POINTS", "check_room", "check_tracks", "shape_of"]
 
@@ -18,8 +19,6 @@ FURTHER: tuple[libvox.Track, ...] = ("voxels", "energy", "strain", "momentum")
 """``voxels``: ``float64[samples, X, Y, Z, 3]``, m, NaN in empty cells. ``energy``: ``[samples, 2]``, J,
 strain energy of the bonds and kinetic energy. ``strain``: ``[samples, 2]``, the least and the greatest of the
 bonds. ``momentum``: ``[samples, 6]``, kg m/s and, about the origin, kg m2/s."""
-
-_LARGEST_RECORD = 2**32  # bytes, of one body
 
 _WIDTHS = {"energy": 2, "strain": 2, "momentum": 6}
 
@@ -50,8 +49,8 @@ def check_room(tracks: Iterable[str], canvas: tuple[int, ...], samples: int) -> 
         InputError: Says how large it would be, and what to do.
     """
     size = 8 * samples * sum(math.prod(shape_of(track, canvas)) for track in tracks)
-    if size > _LARGEST_RECORD:
+    if size > MOST_RECORD_BYTES:
         raise InputError(
             f"{samples} samples of {', '.join(tracks)} would take {size / 2**30:.1f} GiB for one body, "
-            f"at most {_LARGEST_RECORD / 2**30:.0f}; record fewer samples"
+            f"at most {MOST_RECORD_BYTES / 2**30:.0f}; record fewer samples"
         )

@@ -7,14 +7,13 @@ import re
 from pathlib import Path
 from typing import Any
 
-import attrs
 import numpy as np
 import pytest
+from bars import bar, soft
 
 from evoframe import ConfigurationError, Design, InputError, Record
 from evoframe.testing import SimulatorContract
 from evoframe_simulators import FixedRegion, Vox
-from evoframe_simulators.vox.models import model_of
 
 DATA = Path(__file__).parents[3] / "data"
 PAPER = Record(("tip",), every=0.01, samples=(0, 5))
@@ -144,6 +143,21 @@ class TestKey:
         still = Vox(expansion_coefficient=0.0)
         assert self.key(still, small(), controller=np.zeros((4, 3, 3))) == self.key(still, small())
 
+    def test_a_phase_counts_where_the_material_expands_or_contracts(self) -> None:
+        vox = Vox(palette=(soft(1), soft(2, expansion_coefficient=-0.01), soft(3)))
+        body = bar(1, 2, 3)
+        keys = [
+            vox.key(body.with_role("controller", np.eye(3)[n].reshape(3, 1, 1)), Record(("tip",)))
+            for n in range(3)
+        ]
+        assert keys[0] == keys[2] == vox.key(body, Record(("tip",)))
+        assert keys[1] != keys[0]
+
+    def test_without_an_amplitude_no_phase_counts(self) -> None:
+        vox = Vox(temperature_amplitude=25.0)
+        turned = bar(3, 3).with_role("controller", np.ones((2, 1, 1)))
+        assert vox.key(turned, Record(("tip",))) == vox.key(bar(3, 3), Record(("tip",)))
+
     def test_the_shape_counts(self) -> None:
         body = small()
         turned = {role: array.reshape(3, 4, 3) for role, array in body.roles.items()}
@@ -157,33 +171,6 @@ def test_radians_are_cycles_times_two_pi() -> None:
     [in_radians] = Vox(phase_unit="radians").simulate([radians], PAPER)
     assert in_radians.tracks["tip"] == pytest.approx(in_cycles.tracks["tip"], abs=1e-12)
     assert Vox(phase_unit="radians").key(radians, PAPER) == Vox().key(body, PAPER)
-
-
-def test_an_empty_body_counts_as_diverged_before_the_first_step() -> None:
-    [empty] = TestVox().diverging()
-    [outcome] = Vox().simulate([empty], PAPER)
-    assert outcome.diverged_at == 0
-
-
-@pytest.mark.parametrize(
-    ("roles", "message"),
-    [
-        (
-            {"morphology": np.ones((2, 2), np.uint8)},
-            r"morphology is uint8\[2, 2\]; expected uint8\[X, Y, Z\]",
-        ),
-        ({"morphology": np.ones((4, 3, 3))}, "morphology is float64"),
-        (
-            {"controller": np.zeros((3, 3, 3))},
-            r"controller is float64\[3, 3, 3\]; expected float64\[4, 3, 3\]",
-        ),
-        ({"morphology": np.full((4, 3, 3), 7, np.uint8)}, "material has the code 7; codes: 0 empty"),
-        ({"controller": np.full((4, 3, 3), np.nan)}, "phase"),
-    ],
-)
-def test_what_is_no_design_is_refused(roles: dict[str, Any], message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        Vox().simulate([Design({**small(5).roles, **roles})], PAPER)
 
 
 def test_what_is_no_design_has_no_key() -> None:
@@ -220,8 +207,7 @@ class TestBodyWithoutBonds:
     vox = Vox(voxel_size=4.0, duration=10.0)
 
     def test_makes_fewer_steps_than_others_if_a_voxel_is_large(self) -> None:
-        bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
-        with_bond, without = self.vox.simulate([bar, lone()], Record(("tip",)))
+        with_bond, without = self.vox.simulate([bar(1, 1), lone()], Record(("tip",)))
         assert len(without.steps) < len(with_bond.steps)
         assert without.diverged_at is None
 
@@ -233,8 +219,7 @@ class TestBodyWithoutBonds:
         [last] = map(int, re.findall(r"samples 0 to (\d+);", str(caught.value)))
         record = Record(("tip",), every=every, samples=(last,))
         vox.check(record)
-        bar = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
-        for outcome in vox.simulate([bar, lone(), lone(1)], record):
+        for outcome in vox.simulate([bar(1, 1), lone(), lone(1)], record):
             assert len(outcome.steps) == 1
 
     def test_has_no_sample_after_its_own_end(self) -> None:
@@ -245,13 +230,3 @@ class TestBodyWithoutBonds:
 def test_a_long_duration_is_checked_at_once() -> None:
     vox = Vox(duration=1e9, step_limit=2**53)
     vox.check(Record(("tip",), every=0.01, samples=(0, 10**10)))
-
-
-def test_settings_without_a_usable_time_step_are_refused_without_naming_a_body() -> None:
-    with pytest.raises(ValueError, match=r"no usable time step \(at most 2\^53 steps\)$"):
-        Vox(density=1e-6, youngs_modulus=1e18, voxel_size=1e-6, duration=1e9)
-
-
-def test_settings_with_one_canvas_share_a_model() -> None:
-    assert model_of(Vox(), (4, 3, 3)) is model_of(attrs.evolve(Vox()), (4, 3, 3))
-    assert model_of(Vox(), (4, 3, 3)) is not model_of(Vox(duration=1.0), (4, 3, 3))

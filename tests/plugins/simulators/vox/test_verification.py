@@ -8,10 +8,12 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+from bars import bar, soft
 from hypothesis import given, strategies as st
 
 from evoframe import Design, InputError, Record, Variant
-from evoframe_simulators import PaletteMaterial, Vox
+from evoframe_simulators import Vox, VoxSettings
+from evoframe_simulators.vox.verification import changes
 
 PAPER = Record(("tip",), every=0.01, samples=(0, 5))
 CHANGES = ["contraction off", "self collision off", "half the time step", "twice the duration"]
@@ -68,17 +70,8 @@ def test_without_contraction_nothing_is_left_of_it(variants: list[Variant]) -> N
 
 
 def test_a_palette_is_switched_off_as_a_whole() -> None:
-    material = PaletteMaterial(
-        code=1,
-        youngs_modulus=5e6,
-        poisson_ratio=0.3,
-        density=1e6,
-        expansion_coefficient=0.01,
-        static_friction=0.0,
-        dynamic_friction=0.0,
-    )
-    vox = Vox(palette=(material, attrs.evolve(material, code=2, expansion_coefficient=-0.01)))
-    body = Design({"morphology": np.array([[[1]], [[2]]], np.uint8), "controller": np.ones((2, 1, 1))})
+    vox = Vox(palette=(soft(1, expansion_coefficient=0.01), soft(2, expansion_coefficient=-0.01)))
+    body = bar(1, 2).with_role("controller", np.ones((2, 1, 1)))
     still = named(vox.variants(body, PAPER), "contraction off").simulator
     assert isinstance(still, Vox)
     assert [material.expansion_coefficient for material in still.palette] == [0.0, 0.0]
@@ -106,7 +99,7 @@ def test_twice_the_duration_is_sampled_at_twice_the_instants(
     duration: float, every: float, initial: bool, k: int, data: st.DataObject
 ) -> None:
     vox = Vox(duration=duration, substeps=k)
-    body = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
+    body = bar(1, 1)
     taken = len(vox.simulate([body], Record(("tip",), every=every))[0].steps)
     samples = tuple(sorted(data.draw(st.sets(st.integers(0, taken - 1), min_size=1))))
     record = Record(("tip",), every=every, samples=samples, initial=initial)
@@ -162,3 +155,11 @@ def test_what_is_no_design_has_none(morphology: Any, message: str) -> None:
     design = Design({"morphology": morphology, "controller": np.zeros(morphology.shape)})
     with pytest.raises(InputError, match=message):
         Vox().variants(design, PAPER)
+
+
+def test_changed_settings_are_of_the_class_that_was_given() -> None:
+    for kind in (VoxSettings, Vox):
+        given = kind(frequency=2.0)
+        found = [settings for _, settings, _, _ in changes(given, bar(1, 3), PAPER)]
+        assert {type(settings) for settings in found} == {kind}
+        assert {settings.frequency for settings in found} == {2.0}

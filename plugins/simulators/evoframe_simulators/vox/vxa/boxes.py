@@ -36,9 +36,9 @@ def regions_in(environment: Section, lattice: Lattice, refusals: Refusals) -> tu
         found = [region for section, counted in older for region in _listed(section, counted)]
     else:
         found = list(_listed(newer, "NumBCs"))
-        beside = [section for section, counted in older if any(_listed(section, counted))]
-        for section in beside:  # which the engine does not read then
-            refusals.add(section.place if section else "", "regions", "beside Boundary_Conditions")
+        for section, counted in older:
+            if section is not None and any(_listed(section, counted)):  # which the engine does not read then
+                refusals.add(section.place, "regions", "beside Boundary_Conditions")
     boxes = [_box(region, refusals) for region in found]
     holding = [box for box in boxes if box is not None and box.degrees_of_freedom]
     held = [as_engine_holds(box, lattice) for box in holding]

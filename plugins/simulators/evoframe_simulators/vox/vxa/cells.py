@@ -35,7 +35,9 @@ class Lattice:
 
 def as_vox_holds(region: FixedRegion, canvas: tuple[int, int, int]) -> FixedRegion | None:
     """Return a region from centre to centre that holds what ``vox`` holds; nothing if that is no cell."""
-    spans = [_held_by_vox(*span) for span in zip(region.origin, region.size, canvas, strict=True)]
+    axes = zip(region.origin, region.size, canvas, strict=True)
+    held = [np.flatnonzero(overlapping(*span)).tolist() for span in axes]
+    spans = [(cells[0], cells[-1]) if cells else None for cells in held]
     return _from_centre_to_centre(region, spans, canvas)
 
 
@@ -44,11 +46,6 @@ def as_engine_holds(region: FixedRegion, lattice: Lattice) -> FixedRegion | None
     axes = zip(region.origin, region.size, lattice.canvas, strict=True)
     spans = [_held_by_engine(*span, lattice.edge) for span in axes]
     return _from_centre_to_centre(region, spans, lattice.canvas)
-
-
-def _held_by_vox(start: float, length: float, cells: int) -> _Span:
-    held = np.flatnonzero(overlapping(start, length, cells))
-    return (int(held[0]), int(held[-1])) if held.size else None
 
 
 def _held_by_engine(start: float, length: float, cells: int, edge: float) -> _Span:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections import Counter
+from collections.abc import Collection, Mapping
 
 from lxml import etree
 
@@ -16,59 +17,46 @@ _OFF_WORDS = ("", "false")
 _MATERIAL = "VXC/Palette/Material"
 
 
-def refuse_the_unknown(root: Section, used: Collection[int], refusals: Refusals) -> None:
+def refuse_the_unknown(
+    section: Section, used: Collection[int], refusals: Refusals, schema: Schema = VXA
+) -> None:
     """Note every tag of a file that asks for more than vox does (see :mod:`.vxa.schema`).
 
     Args:
-        root: The file.
+        section: The file, or a section of it.
         used: The positions in the palette, from 1, of the materials that voxels have; others are passed by.
-        refusals: Where it is noted.
+        refusals: Where it is noted; equal names are numbered where there may be several.
+        schema: Of the section.
     """
-    _check_section(root, VXA, used, refusals)
-
-
-def _check_section(section: Section, schema: Schema, used: Collection[int], refusals: Refusals) -> None:
-    """Check all tags in a section; equal names are numbered where there may be several."""
-    seen: dict[str, int] = {}
+    seen: Counter[str] = Counter()
     for element in section.element:
         tag = str(element.tag)
-        seen[tag] = seen.get(tag, 0) + 1
+        seen[tag] += 1
         place = section.at(tag)
         if place == _MATERIAL and seen[tag] not in used:
             continue
         if tag in ("Material", "FRegion"):
             place = f"{place} {seen[tag]}"
-        _check_tag(Section(element, place), schema.get(tag), used, refusals)
+        role = schema.get(tag)
+        if isinstance(role, Mapping):
+            refuse_the_unknown(Section(element, place), used, refusals, role)
+        elif not _is_accepted(element, role):
+            value = shown(" ".join(str(text) for text in element.itertext()))
+            refusals.add(place, value, "unknown to vox" if role is None else "")
 
 
-def _check_tag(
-    found: Section, role: Schema | Role | float | None, used: Collection[int], refusals: Refusals
-) -> None:
+def _is_accepted(element: etree._Element, role: Role | float | None) -> bool:
+    """Return whether an element asks for nothing that vox does not do."""
     if role is None:
-        if not _is_off(found.element):
-            refusals.add(found.place, _value(found.element), "unknown to vox")
-    elif role is Role.REFUSED:
-        refusals.add(found.place, _value(found.element))
-    elif isinstance(role, float):
-        if not _is(found.element, role):
-            refusals.add(found.place, _value(found.element))
-    elif not isinstance(role, Role):
-        _check_section(found, role, used, refusals)
-
-
-def _is(element: etree._Element, wanted: float) -> bool:
-    """Return whether an element holds the one number that is accepted, or nothing."""
+        return _is_off(element)
+    if isinstance(role, Role):
+        return role is not Role.REFUSED
     text = (element.text or "").strip()
-    return not len(element) and (
-        not text or number_in(text) == wanted or (wanted == 0.0 and _is_off(element))
-    )
+    is_the_number = not text or number_in(text) == role or (role == 0.0 and _is_off(element))
+    return is_the_number and not len(element)
 
 
 def _is_off(element: etree._Element) -> bool:
     """Return whether all that an element holds is empty, a zero or ``false``."""
     texts = (str(text).strip().lower() for text in element.itertext())
     return all(text in _OFF_WORDS or number_in(text) == 0.0 for text in texts)
-
-
-def _value(element: etree._Element) -> str:
-    return shown(" ".join(str(text) for text in element.itertext()))

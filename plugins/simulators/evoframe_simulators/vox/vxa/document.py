@@ -24,8 +24,7 @@ def parsed(path: Path) -> etree._Element:
         OSError: The file cannot be read.
         InputError: It is too large, no XML, or defines entities; says which.
     """
-    text = _text(path)
-    _check_bounds(text)
+    text = _bounded_text(path)
     parser = etree.XMLParser(
         encoding="utf-8",
         load_dtd=False,
@@ -51,18 +50,16 @@ def shown(text: str, *, quoted: bool = True) -> str:
     return f"'{short}'" if quoted else short
 
 
-def _text(path: Path) -> str:
+def _bounded_text(path: Path) -> str:
+    """Return the text of a file, unless it is larger than a parser should be given, or names entities."""
     with path.open("rb") as file:
         data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
         raise InputError(f"is larger than {_MOST_BYTES // 2**20} MiB")
     try:
-        return data.decode("utf-8")
+        text = data.decode("utf-8")
     except UnicodeDecodeError:
-        return data.decode("iso-8859-1")
-
-
-def _check_bounds(text: str) -> None:
+        text = data.decode("iso-8859-1")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise InputError("has a DOCTYPE or an ENTITY, which no VXA file needs; they are not read")
     # Every element has an end, every attribute its quotes; and neither character stands for a material.
@@ -70,3 +67,4 @@ def _check_bounds(text: str) -> None:
     quotes = text.count('"') + text.count("'")
     if max(elements, quotes // 2) > _MOST_ELEMENTS:
         raise InputError(f"has more than {_MOST_ELEMENTS} elements or attributes")
+    return text

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from lxml import etree
 
 from evoframe import InputError
+from evoframe_simulators.files import naming
 from evoframe_simulators.vox.materials import PaletteMaterial, single
 from evoframe_simulators.vox.vxa.boxes import regions_in
 from evoframe_simulators.vox.vxa.cells import Lattice
@@ -29,7 +29,7 @@ _VERSIONS = ("", "0.93", "0.94")  # of the section VXC; the structure of others 
 _HORIZON_SYSTEMS = (2, 3)  # one and the same in the engine, whose choice of all voxels is never taken
 _PERIODS = 3  # of the temperature, whether it varies or not
 _DURATIONS = (2, _PERIODS)
-_MOST_STEPS = 10**12
+_MOST_COUNTED_STEPS = 10**12
 
 
 def read_vxa(path: Path) -> VxaFile:
@@ -43,39 +43,32 @@ def read_vxa(path: Path) -> VxaFile:
     Raises:
         InputError: The file cannot be read, is no VXA file, or asks for more; says what, and where.
     """
-    try:
-        return _file(parsed(path))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-
-
-def _file(element: etree._Element) -> VxaFile:
-    if element.tag != "VXA":
-        raise InputError(f"is no VXA file: it begins with {shown(str(element.tag))}; expected 'VXA'")
-    root, refusals = Section(element, ""), Refusals()
-    simulator, environment, vxc = (root.need(tag) for tag in ("Simulator", "Environment", "VXC"))
-    structure, palette = vxc.need("Structure"), vxc.need("Palette")
-    _check_encoding(vxc, structure, refusals)
-    lattice = Lattice(canvas_in(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
-    material = material_in(structure, lattice.canvas, palette.count("Material"))
-    used = np.unique(material[material > 0]).tolist()
-    refuse_the_unknown(root, used, refusals)
-    stop, steps = _stop(simulator, environment, refusals)
-    options = {
-        "voxel_size": lattice.edge,
-        "fixed": regions_in(environment, lattice, refusals),
-        **_integration(simulator),
-        **_collisions(simulator, refusals),
-        **stop,
-        **_gravity(environment),
-        **_fluid(environment),
-        **_thermal(environment, refusals),
-    }
-    refusals.check()
-    options["palette"] = _palette(palette, used)
-    return VxaFile(options, material, phase_in(structure, lattice.canvas), steps)
+    with naming(path):
+        element = parsed(path)
+        if element.tag != "VXA":
+            raise InputError(f"is no VXA file: it begins with {shown(str(element.tag))}; expected 'VXA'")
+        root, refusals = Section(element, ""), Refusals()
+        simulator, environment, vxc = (root.need(tag) for tag in ("Simulator", "Environment", "VXC"))
+        structure, palette = vxc.need("Structure"), vxc.need("Palette")
+        _check_encoding(vxc, structure, refusals)
+        lattice = Lattice(canvas_in(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
+        material = material_in(structure, lattice.canvas, palette.count("Material"))
+        used = np.unique(material[material > 0]).tolist()
+        refuse_the_unknown(root, used, refusals)
+        stop, steps = _stop(simulator, environment, refusals)
+        options = {
+            "voxel_size": lattice.edge,
+            "fixed": regions_in(environment, lattice, refusals),
+            **_integration(simulator),
+            **_collisions(simulator, refusals),
+            **stop,
+            **_surroundings(environment),
+            **_thermal(environment, refusals),
+        }
+        refusals.check()
+        numbered = enumerate(palette.all("Material"), 1)
+        options["palette"] = tuple(_material(found, code) for code, found in numbered if code in used)
+        return VxaFile(options, material, phase_in(structure, lattice.canvas), steps)
 
 
 def _check_encoding(vxc: Section, structure: Section, refusals: Refusals) -> None:
@@ -119,9 +112,9 @@ def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple
     kind = section.whole("StopConditionType", 0, most=6)
     if kind == 1:  # which the engine rounds, and exceeds by one step
         counted = section.number("StopConditionValue", 0.0, least=0.0)
-        if counted > _MOST_STEPS:
+        if counted > _MOST_COUNTED_STEPS:
             raise InputError(
-                f"{section.at('StopConditionValue')}: {counted:g} steps; at most {_MOST_STEPS:g}"
+                f"{section.at('StopConditionValue')}: {counted:g} steps; at most {_MOST_COUNTED_STEPS:g}"
             )
         return {"start_time": start}, math.floor(counted + 0.5) + 1
     if kind not in _DURATIONS:
@@ -134,20 +127,17 @@ def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple
     return {"start_time": start, "duration": duration}, None
 
 
-def _gravity(environment: Section) -> dict[str, Any]:
-    section = environment.need("Gravity")
-    floor = section.flag("FloorEnabled")
-    return {
-        "gravity": section.number("GravAcc", -9.81) if section.flag("GravEnabled") else 0.0,
+def _surroundings(environment: Section) -> dict[str, Any]:
+    gravity = environment.need("Gravity")
+    floor = gravity.flag("FloorEnabled")
+    options = {
+        "gravity": gravity.number("GravAcc", -9.81) if gravity.flag("GravEnabled") else 0.0,
         "floor": floor,
-        "floor_slope": section.number("FloorSlope", 0.0) if floor else 0.0,
+        "floor_slope": gravity.number("FloorSlope", 0.0) if floor else 0.0,
     }
-
-
-def _fluid(environment: Section) -> dict[str, Any]:
-    if not environment.flag("FluidEnvironment"):
-        return {}
-    return {"fluid_drag": environment.number("AggregateDragCoefficient", 0.0, least=0.0)}
+    if environment.flag("FluidEnvironment"):
+        options["fluid_drag"] = environment.number("AggregateDragCoefficient", 0.0, least=0.0)
+    return options
 
 
 def _thermal(environment: Section, refusals: Refusals) -> dict[str, Any]:
@@ -169,14 +159,8 @@ def _thermal(environment: Section, refusals: Refusals) -> dict[str, Any]:
     return {"temperature_base": base, "temperature_amplitude": highest, "frequency": 1.0 / period}
 
 
-def _palette(palette: Section, used: list[int]) -> tuple[PaletteMaterial, ...]:
-    """Return the materials that voxels have; a material's code is its position."""
-    return tuple(
-        _material(found, code) for code, found in enumerate(palette.all("Material"), 1) if code in used
-    )
-
-
 def _material(found: Section, code: int) -> PaletteMaterial:
+    """Return a material of the palette; its code is its position."""
     mechanical = found.need("Mechanical")
     name = " ".join((found.text("Name") or "").split())
     try:

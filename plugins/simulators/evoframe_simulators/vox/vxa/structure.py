@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import InputError
-from evoframe_simulators.vox.bodies import MOST_CELLS, check_cycles
+from evoframe_simulators.vox.bodies import check_cycles
+from evoframe_simulators.vox.limits import MOST_CELLS
 from evoframe_simulators.vox.vxa.document import shown
 from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
 from evoframe_simulators.vox.vxa.sections import Section, number_in
@@ -73,27 +74,22 @@ def phase_in(structure: Section, canvas: tuple[int, int, int]) -> NDArray[np.flo
     section = structure.find("PhaseOffset")
     if section is None:
         return np.zeros(canvas)
-    phase = _arranged([_offsets(layer, canvas) for layer in _layers(section, canvas)], canvas)
+    rows = []
+    for layer in _layers(section, canvas):
+        items = _text(layer).removesuffix(",")  # which may follow the last offset
+        cells = items.count(",") + 1
+        if cells != canvas[0] * canvas[1]:  # before so many strings are made
+            raise InputError(f"{layer.place} has {cells} offsets; expected {canvas[0]} x {canvas[1]}")
+        row = np.empty(cells)
+        for n, item in enumerate(items.split(",")):
+            offset = number_in(item.strip())
+            if offset is None:
+                raise InputError(f"{layer.place} has the offset {shown(item)}; expected a finite number")
+            row[n] = offset
+        rows.append(row)
+    phase = _arranged(rows, canvas)
     check_cycles(phase, section.place)
     return phase
-
-
-def _offsets(layer: Section, canvas: tuple[int, int, int]) -> NDArray[np.float64]:
-    """Return the numbers of a layer; a comma may follow the last one."""
-    text = _text(layer).removesuffix(",")
-    expected = canvas[0] * canvas[1]
-    if text.count(",") + 1 != expected:  # before so many strings are made
-        raise InputError(
-            f"{layer.place} has {text.count(',') + 1} offsets; expected {canvas[0]} x {canvas[1]}"
-        )
-    return np.fromiter((_offset(item, layer) for item in text.split(",")), np.float64, expected)
-
-
-def _offset(item: str, layer: Section) -> float:
-    value = number_in(item.strip())
-    if value is None:
-        raise InputError(f"{layer.place} has the offset {shown(item)}; expected a finite number")
-    return value
 
 
 def _layers(section: Section, canvas: tuple[int, int, int]) -> Iterator[Section]:

@@ -6,9 +6,10 @@ have all their digits, so that what is read again is what was written.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape  # that of xml.sax imports half the network
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
@@ -16,14 +17,12 @@ from numpy.typing import NDArray
 
 from evoframe import InputError
 from evoframe_simulators.vox.bodies import check_cycles
-from evoframe_simulators.vox.materials import PaletteMaterial, materials_of, single
+from evoframe_simulators.vox.materials import PaletteMaterial
+from evoframe_simulators.vox.regions import FixedRegion
+from evoframe_simulators.vox.settings import VoxSettings, materials_of, period_of
 from evoframe_simulators.vox.vxa.cells import as_vox_holds
 from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
 from evoframe_simulators.vox.vxa.inert import CHANGES, CONTROLLERS, FEATURES, GROWTH, TASKS, UNUSED
-
-if TYPE_CHECKING:
-    from evoframe_simulators.vox.regions import FixedRegion
-    from evoframe_simulators.vox.simulator import Vox
 
 __all__ = ["left_out", "write_vxa"]
 
@@ -46,23 +45,27 @@ _WITHOUT_TAG = (
 _Node = str | Iterable[str]
 
 
-def left_out(vox: Vox) -> tuple[str, ...]:
+def left_out(settings: VoxSettings) -> tuple[str, ...]:
     """Return what of the settings a VXA file cannot say; what the engine does anyway is not missing."""
-    defaults = attrs.fields_dict(type(vox))
+    defaults = attrs.fields_dict(VoxSettings)
     return tuple(
-        f"{words} ({option} = {getattr(vox, option)})"
+        f"{words} ({option} = {getattr(settings, option)})"
         for option, words, in_contacts in _WITHOUT_TAG
-        if getattr(vox, option) != defaults[option].default and (vox.self_collision or not in_contacts)
+        if getattr(settings, option) != defaults[option].default
+        and (settings.self_collision or not in_contacts)
     )
 
 
 def write_vxa(
-    vox: Vox, material: NDArray[np.uint8], phase_cycles: NDArray[np.float64], acting: NDArray[np.bool_]
+    settings: VoxSettings,
+    material: NDArray[np.uint8],
+    phase_cycles: NDArray[np.float64],
+    acting: NDArray[np.bool_],
 ) -> bytes:
     """Return a body with its controller and settings as a VXA file, the same bytes for the same arguments.
 
     Args:
-        vox: The settings.
+        settings: The settings.
         material: ``uint8[X, Y, Z]``; a code is the position of its material in the palette that is written.
         phase_cycles: ``float64[X, Y, Z]``, cycles.
         acting: ``bool[X, Y, Z]``, where an offset changes the size of a voxel; others may be anything.
@@ -75,9 +78,9 @@ def write_vxa(
     check_cycles(phase_cycles[acting], "controller")
     usable = (material > 0) & np.isfinite(phase_cycles)
     lines = [
-        *_node("Simulator", _simulator(vox)),
-        *_node("Environment", _environment(vox, _fixed(vox, material.shape))),
-        *_node("VXC", _vxc(vox, material, np.where(usable, phase_cycles, 0.0)), Version="0.93"),
+        *_node("Simulator", _simulator(settings)),
+        *_node("Environment", _environment(settings, material.shape)),
+        *_node("VXC", _vxc(settings, material, np.where(usable, phase_cycles, 0.0)), Version="0.93"),
     ]
     head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
     text = "\n".join([head, *_node("VXA", lines, Version="1.0"), ""])
@@ -105,18 +108,18 @@ def _section(tag: str, values: Mapping[str, float]) -> Iterator[str]:
     return _node(tag, _values(values))
 
 
-def _simulator(vox: Vox) -> Iterator[str]:
-    yield from _section("Integration", {"Integrator": 0, "DtFrac": vox.time_step_fraction})
+def _simulator(settings: VoxSettings) -> Iterator[str]:
+    yield from _section("Integration", {"Integrator": 0, "DtFrac": settings.time_step_fraction})
     damping = {
-        "BondDampingZ": vox.bond_damping,
-        "ColDampingZ": vox.collision_damping,
-        "SlowDampingZ": vox.slow_damping,
+        "BondDampingZ": settings.bond_damping,
+        "ColDampingZ": settings.collision_damping,
+        "SlowDampingZ": settings.slow_damping,
     }
     yield from _section("Damping", damping)
     collisions = {
-        "SelfColEnabled": vox.self_collision,
+        "SelfColEnabled": settings.self_collision,
         "ColSystem": 3,
-        "CollisionHorizon": vox.collision_horizon,
+        "CollisionHorizon": settings.collision_horizon,
     }
     yield from _section("Collisions", collisions)
     yield from _section("Features", FEATURES)
@@ -124,8 +127,8 @@ def _simulator(vox: Vox) -> Iterator[str]:
     yield from _node("SurfMesh", _node("CMesh", mesh))
     stop = {
         "StopConditionType": 2,
-        "StopConditionValue": vox.duration,
-        "InitCmTime": vox.start_time,
+        "StopConditionValue": settings.duration,
+        "InitCmTime": settings.start_time,
         "ActuationStartTime": 0,
         "AfterlifeTime": 0,
         "MidLifeFreezeTime": 0,
@@ -137,37 +140,35 @@ def _simulator(vox: Vox) -> Iterator[str]:
     yield from _values({"MinTempFact": 0.1, **CHANGES})
 
 
-def _fixed(vox: Vox, canvas: tuple[int, ...]) -> list[FixedRegion]:
-    """Return the regions that hold a cell, each so that it holds the same cells in the engine."""
+def _environment(settings: VoxSettings, canvas: tuple[int, ...]) -> Iterator[str]:
     x, y, z = canvas
-    held = [as_vox_holds(region, (x, y, z)) for region in vox.fixed]
-    return [region for region in held if region is not None]
-
-
-def _environment(vox: Vox, fixed: list[FixedRegion]) -> Iterator[str]:
-    regions = [line for region in fixed for line in _section("FRegion", _region(region))]
-    yield from _node("Boundary_Conditions", [*_values({"NumBCs": len(fixed)}), *regions])
+    held = [as_vox_holds(region, (x, y, z)) for region in settings.fixed]
+    regions = [_section("FRegion", _region(region)) for region in held if region is not None]
+    count = _values({"NumBCs": len(regions)})
+    yield from _node("Boundary_Conditions", itertools.chain(count, *regions))
     gravity = {
-        "GravEnabled": vox.gravity != 0.0,
-        "GravAcc": vox.gravity,
+        "GravEnabled": settings.gravity != 0.0,
+        "GravAcc": settings.gravity,
         "AlterGravityHalfway": 1,
-        "FloorEnabled": vox.floor,
-        "FloorSlope": vox.floor_slope,
+        "FloorEnabled": settings.floor,
+        "FloorSlope": settings.floor_slope,
     }
     yield from _section("Gravity", gravity)
     thermal = {
         "TempEnabled": 1,
-        "TempAmp": vox.temperature_amplitude,
-        "TempBase": vox.temperature_base,
+        "TempAmp": settings.temperature_amplitude,
+        "TempBase": settings.temperature_base,
         "VaryTempEnabled": 1,
-        "TempPeriod": single(1 / vox.frequency),
+        "TempPeriod": period_of(settings),
     }
     yield from _section("Thermal", thermal)
     for tag, values in CONTROLLERS.items():
         yield from _section(tag, values)
-    traces = max(0.01, vox.duration / 100)  # of a long simulation the engine would write huge ones
+    traces = max(0.01, settings.duration / 100)  # of a long simulation the engine would write huge ones
     yield from _values({**GROWTH, "TimeBetweenTraces": traces, "SavePassiveData": 0, **TASKS})
-    yield from _values({"FluidEnvironment": vox.fluid_drag > 0.0, "AggregateDragCoefficient": vox.fluid_drag})
+    yield from _values(
+        {"FluidEnvironment": settings.fluid_drag > 0.0, "AggregateDragCoefficient": settings.fluid_drag}
+    )
 
 
 def _region(region: FixedRegion) -> dict[str, float]:
@@ -185,15 +186,15 @@ def _region(region: FixedRegion) -> dict[str, float]:
     }
 
 
-def _vxc(vox: Vox, material: NDArray[np.uint8], phase: NDArray[np.float64]) -> Iterator[str]:
+def _vxc(settings: VoxSettings, material: NDArray[np.uint8], phase: NDArray[np.float64]) -> Iterator[str]:
     straight = {
         **{f"{axis}_Dim_Adj": 1 for axis in "XYZ"},
         **{f"{axis}_{what}_Offset": 0 for what in ("Line", "Layer") for axis in "XY"},
     }
-    yield from _section("Lattice", {"Lattice_Dim": vox.voxel_size, **straight})
+    yield from _section("Lattice", {"Lattice_Dim": settings.voxel_size, **straight})
     squeeze = _values({f"{axis}_Squeeze": 1 for axis in "XYZ"})
     yield from _node("Voxel", ["<Vox_Name>BOX</Vox_Name>", *squeeze])
-    yield from _node("Palette", _palette(materials_of(vox), int(material.max())))
+    yield from _node("Palette", _palette(materials_of(settings), int(material.max())))
     yield from _node("Structure", _structure(material, phase), Compression="ASCII_READABLE")
 
 

@@ -377,56 +377,6 @@ class TestRefusals:
         with pytest.raises(InputError, match=r"VXC Version = '0\.92' \(vox reads 0\.93 and 0\.94\)"):
             read_vxa(path)
 
-    @pytest.mark.parametrize(
-        "more",
-        [
-            "<Wind>0</Wind>",
-            "<Wind/>",
-            "<Wind><Speed>0.0</Speed><On>False</On></Wind>",
-            "<!-- 3 -->",
-            "<?wind 3?>",
-        ],
-    )
-    def test_unknown_tags_that_are_off_are_none(self, vxa: Write, more: str) -> None:
-        assert read_vxa(vxa(after={"<Environment>": more})).canvas == (6, 3, 3)
-
-    @pytest.mark.parametrize(
-        ("after", "more"),
-        [
-            ("</GA>", "<ParentLifetime>2</ParentLifetime>"),
-            ("</GA>", "<SimStop><SimStopWhat>3</SimStopWhat></SimStop>"),
-            ("<Environment>", "<BallisticSlowdownFact>10</BallisticSlowdownFact>"),
-            ("<Environment>", "<MaxSlowdownPermitted>0.1</MaxSlowdownPermitted>"),
-            ("<Environment>", "<MinGrowthTime>0.1</MinGrowthTime>"),
-            ("<Mechanical>", "<IsConductive>1</IsConductive>"),
-            ("<Mechanical>", "<IsPacemaker>1</IsPacemaker>"),
-            ("<Mechanical>", "<MaterialTempPhase>0.5</MaterialTempPhase>"),
-            ("<LightSource>", "<X>3</X>"),
-        ],
-    )
-    def test_tags_that_move_no_voxel_are_none(self, vxa: Write, after: str, more: str) -> None:
-        assert changed(vxa(after={after: more})) == changed(vxa())
-
-    @pytest.mark.parametrize(
-        "tag",
-        [
-            "TiltVectorsUpdatesPerTempCycle",
-            "SignalingUpdatesPerTempCycle",
-            "GrowthSpeedLimit",
-            "GreedyGrowth",
-        ],
-    )
-    def test_values_that_move_no_voxel_are_none(self, vxa: Write, tag: str) -> None:
-        assert changed(vxa(**{tag: 4})) == changed(vxa())
-
-    def test_materials_that_no_voxel_has_are_not_looked_at(self, vxa: Write) -> None:
-        path = vxa()
-        text = path.read_text()
-        start = text.index('<Material ID="4">')
-        head, tail = text[:start], text[start:]
-        path.write_text(head + tail.replace("<MatModel>0<", "<MatModel>2<").replace("-0.01", "much"))
-        assert [material.code for material in simulator(path).palette] == [1, 3]
-
 
 def test_a_design_is_what_the_file_has() -> None:
     for name in ("template", "evosoro", "voxcad"):

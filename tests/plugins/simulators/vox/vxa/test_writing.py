@@ -10,6 +10,7 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+from bars import soft
 from hypothesis import given, settings, strategies as st
 from lxml import etree
 
@@ -225,7 +226,7 @@ class TestFile:
         ["", "  ", "<&>", "größer", "\N{LATIN CAPITAL LETTER A WITH TILDE}\N{COPYRIGHT SIGN}", "\N{SNOWMAN}"],
     )
     def test_names_are_kept_as_far_as_there_is_one(self, name: str, tmp_path: Path) -> None:
-        material = attrs.evolve(_soft(1), name=name)
+        material = attrs.evolve(soft(1), name=name)
         path = tmp_path / "a.vxa"
         design = Design({"morphology": np.ones((2, 1, 1), np.uint8), "controller": np.zeros((2, 1, 1))})
         written(Vox(palette=(material,)), design, path)
@@ -253,31 +254,19 @@ class TestRefusals:
             Vox().export(design, "vxa")
 
     def test_a_material_that_is_no_character(self) -> None:
-        vox = Vox(palette=(_soft(78), _soft(79)))
+        vox = Vox(palette=(soft(78), soft(79)))
         design = Design({"morphology": np.full((2, 1, 1), 78, np.uint8), "controller": np.zeros((2, 1, 1))})
         assert vox.export(design, "vxa").data
         with pytest.raises(InputError, match=r"the body has the material 79; .* up to 78"):
             vox.export(design.with_role("morphology", np.full((2, 1, 1), 79, np.uint8)), "vxa")
 
     def test_materials_that_end_the_text_they_stand_in(self) -> None:
-        vox = Vox(palette=(_soft(45), _soft(14)))
+        vox = Vox(palette=(soft(45), soft(14)))
         material = np.array([45, 45, 14], np.uint8).reshape(3, 1, 1)
         with pytest.raises(InputError, match="materials 45, 45, 14 in a row"):
             vox.export(Design({"morphology": material, "controller": np.zeros((3, 1, 1))}), "vxa")
         upright = material.reshape(1, 1, 3)
         assert vox.export(Design({"morphology": upright, "controller": np.zeros((1, 1, 3))}), "vxa").data
-
-
-def _soft(code: int) -> PaletteMaterial:
-    return PaletteMaterial(
-        code=code,
-        youngs_modulus=5e6,
-        poisson_ratio=0.35,
-        density=1e6,
-        expansion_coefficient=0.0,
-        static_friction=1.0,
-        dynamic_friction=0.5,
-    )
 
 
 def _sections(schema: Schema, place: str = "") -> list[str]:

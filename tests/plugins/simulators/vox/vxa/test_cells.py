@@ -7,19 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bars import bar
 from hypothesis import example, given, strategies as st
-from lxml import etree
 from numpy.typing import NDArray
 
-from evoframe import Design, InputError
 from evoframe_simulators import FixedRegion, Vox
 from evoframe_simulators.vox.regions import fixed_mask
 from evoframe_simulators.vox.vxa import read_vxa
 from evoframe_simulators.vox.vxa.cells import Lattice, as_engine_holds, as_vox_holds
 
 Write = Callable[..., Path]
-
-ALL_FREEDOMS = 63
 
 
 def engine_mask(region: FixedRegion, lattice: Lattice) -> NDArray[np.bool_]:
@@ -119,72 +116,34 @@ def test_the_default_is_the_slab_in_both() -> None:
     assert mask_of(written, lattice).tolist() == [[[x == 0] * 3] * 3 for x in range(6)]
 
 
-def bar(cells: int) -> Design:
-    return Design({"morphology": np.ones((cells, 1, 1), np.uint8), "controller": np.zeros((cells, 1, 1))})
+def test_a_long_canvas_takes_no_time() -> None:
+    lattice = Lattice((2**24, 1, 1), 0.01)
+    region = FixedRegion((0.25, 0.0, 0.0), (0.5, 1.0, 1.0))
+    for _ in range(10_000):
+        held = as_engine_holds(region, lattice)
+    assert held is not None
+    first, length = held.origin[0] * 2**24, held.size[0] * 2**24
+    assert first == pytest.approx(2**22, abs=2)
+    assert length == pytest.approx(2**23, abs=3)
 
 
-class TestFiles:
-    def test_a_face_between_cells_is_written_for_the_engine(self, tmp_path: Path) -> None:
-        lattice, region = ODD
-        vox = Vox(fixed=(region,), voxel_size=lattice.edge)
-        path = tmp_path / "a.vxa"
-        path.write_bytes(vox.export(bar(20), "vxa").data)
-        [again] = read_vxa(path).options["fixed"]
-        assert np.flatnonzero(mask_of(again, lattice)).tolist() == list(range(7))
-        text = path.read_text()
-        assert f"<X>{0.5 / 20!r}</X>" in text
-        assert f"<dX>{6 / 20!r}</dX>" in text
-
-    def test_a_face_between_cells_is_read_as_the_engine_does(self, vxa: Write) -> None:
-        lattice, _ = ODD
-        row = f"<Layer>{'1' * 20}</Layer>"
-        path = vxa("voxcad", X_Voxels=20, dX=0.35)
-        text = path.read_text().replace("<Layer>11111</Layer>", row)
-        path.write_text(text.replace("<Lattice>", "<Lattice><Lattice_Dim>0.01</Lattice_Dim>"))
-        held = [
-            np.flatnonzero(mask_of(region, lattice)).tolist() for region in read_vxa(path).options["fixed"]
-        ]
-        assert held == [list(range(8)), [19]]
-
-    @pytest.mark.parametrize(
-        "region",
-        [
-            FixedRegion((1.0, 0.0, 0.0), (1.0, 1.0, 1.0)),
-            FixedRegion((-1.0, 0.0, 0.0), (1.0, 1.0, 1.0)),
-            FixedRegion((0.0, 2.0, 0.0), (1.0, 1.0, 1.0)),
-            FixedRegion((0.5, 0.0, 0.0), (0.0, 1.0, 1.0)),
-        ],
-    )
-    def test_regions_without_cells_are_neither_written_nor_counted(self, region: FixedRegion) -> None:
-        root = etree.fromstring(Vox(fixed=(region, FixedRegion())).export(bar(4), "vxa").data)
-        [section] = root.findall("Environment/Boundary_Conditions")
-        assert section.findtext("NumBCs") == "1"
-        assert [found.findtext("DofFixed") for found in section.findall("FRegion")] == [str(ALL_FREEDOMS)]
-        alone = etree.fromstring(Vox(fixed=(region,)).export(bar(4), "vxa").data)
-        assert alone.findtext("Environment/Boundary_Conditions/NumBCs") == "0"
-
-    def test_regions_without_cells_are_not_read(self, vxa: Write) -> None:
-        assert read_vxa(vxa(X=1.5)).options["fixed"] == ()
-
-    def test_a_long_canvas_takes_no_time(self) -> None:
-        lattice = Lattice((2**24, 1, 1), 0.01)
-        region = FixedRegion((0.25, 0.0, 0.0), (0.5, 1.0, 1.0))
-        for _ in range(10_000):
-            held = as_engine_holds(region, lattice)
-        assert held is not None
-        first, length = held.origin[0] * 2**24, held.size[0] * 2**24
-        assert first == pytest.approx(2**22, abs=2)
-        assert length == pytest.approx(2**23, abs=3)
-
-    @pytest.mark.parametrize("edge", ["5e-324", "1e308"])
-    def test_an_edge_out_of_range_is_refused(self, vxa: Write, edge: str) -> None:
-        with pytest.raises(InputError, match=r"given\.vxa: "):
-            Vox.settings_of(vxa(Lattice_Dim=edge))
-
-
-def test_the_settings_are_the_same_when_written_again(tmp_path: Path) -> None:
+def test_a_face_between_cells_is_written_for_the_engine(tmp_path: Path) -> None:
+    lattice, region = ODD
+    vox = Vox(fixed=(region,), voxel_size=lattice.edge)
     path = tmp_path / "a.vxa"
-    path.write_bytes(Vox().export(bar(4), "vxa").data)
-    once = read_vxa(path).options
-    path.write_bytes(Vox(**once).export(bar(4), "vxa").data)
-    assert read_vxa(path).options == once
+    path.write_bytes(vox.export(bar(*[1] * 20), "vxa").data)
+    [again] = read_vxa(path).options["fixed"]
+    assert np.flatnonzero(mask_of(again, lattice)).tolist() == list(range(7))
+    text = path.read_text()
+    assert f"<X>{0.5 / 20!r}</X>" in text
+    assert f"<dX>{6 / 20!r}</dX>" in text
+
+
+def test_a_face_between_cells_is_read_as_the_engine_does(vxa: Write) -> None:
+    lattice, _ = ODD
+    row = f"<Layer>{'1' * 20}</Layer>"
+    path = vxa("voxcad", X_Voxels=20, dX=0.35)
+    text = path.read_text().replace("<Layer>11111</Layer>", row)
+    path.write_text(text.replace("<Lattice>", "<Lattice><Lattice_Dim>0.01</Lattice_Dim>"))
+    held = [np.flatnonzero(mask_of(region, lattice)).tolist() for region in read_vxa(path).options["fixed"]]
+    assert held == [list(range(8)), [19]]

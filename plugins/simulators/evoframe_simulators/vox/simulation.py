@@ -1,0 +1,70 @@
+"""Simulation of a batch of designs: those of one canvas together, as far as they are sampled as often."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from evoframe import MORPHOLOGY, Design, InputError, Outcome, Record
+from evoframe_simulators.vox.bodies import check_codes, check_design
+from evoframe_simulators.vox.models import Canvas, clock_of, model_of, without_number
+from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
+from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_room, shape_of
+
+__all__ = ["simulate"]
+
+
+def simulate(settings: VoxSettings, designs: Sequence[Design], record: Record) -> list[Outcome]:
+    """Return the outcome of each design, in order; one without a voxel counts as diverged at step 0.
+
+    Raises:
+        InputError: A design is no body with a controller, or its record would be too large.
+    """
+    outcomes: dict[int, Outcome] = {}
+    canvases: dict[Canvas, dict[int, Design]] = defaultdict(dict)
+    for index, design in enumerate(designs):
+        check_design(design)
+        material = design.roles[MORPHOLOGY]
+        x, y, z = material.shape
+        if material.any():
+            canvases[x, y, z][index] = design
+        else:
+            nothing = {track: np.zeros((0, *shape_of(track, (x, y, z)))) for track in record.tracks}
+            outcomes[index] = Outcome(np.zeros(0, np.int64), np.zeros(0), nothing, diverged_at=0)
+    for canvas, group in canvases.items():
+        try:
+            outcomes |= _on_canvas(settings, canvas, group, record)
+        except ValueError as error:  # the solver's words for what cells hold
+            for design in group.values():  # it does not say which code it does not know
+                check_codes(design.roles[MORPHOLOGY], materials_of(settings))
+            raise InputError(without_number(error)) from error
+    return [outcomes[index] for index in range(len(designs))]
+
+
+def _on_canvas(
+    settings: VoxSettings, canvas: Canvas, designs: Mapping[int, Design], record: Record
+) -> dict[int, Outcome]:
+    """Simulate designs on one canvas, each number of samples in one call of the solver."""
+    clocks = {index: clock_of(settings, design.roles[MORPHOLOGY]) for index, design in designs.items()}
+    samples = {clock: clock.samples(record) for clock in set(clocks.values())}
+    tracks = tuple(track for track in (*POINTS, *FURTHER) if track in record.tracks)
+    outcomes: dict[int, Outcome] = {}
+    for count in {len(taken) for taken in samples.values()}:
+        check_room(tracks, canvas, count)
+        chosen = {index: clock for index, clock in clocks.items() if len(samples[clock]) == count}
+        result = model_of(settings, canvas).simulate(
+            np.stack([designs[index].roles[MORPHOLOGY] for index in chosen]),
+            np.stack([phase_cycles(settings, designs[index]) for index in chosen]),
+            np.stack([samples[clock] for clock in chosen.values()]),
+            tracks,
+        )
+        for place, (index, clock) in enumerate(chosen.items()):
+            outcomes[index] = Outcome(
+                steps=samples[clock],
+                times=samples[clock] * np.float64(clock.time_step),
+                tracks={name: track[place] for name, track in result.tracks.items()},
+                diverged_at=int(result.diverged_step[place]) or None,
+            )
+    return outcomes

@@ -1,0 +1,63 @@
+"""What voxels are made of: one material, and a palette of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+from bars import soft
+from hypothesis import given, strategies as st
+
+from evoframe_simulators import Vox
+from evoframe_simulators.vox.materials import described, single, solver_palette
+from evoframe_simulators.vox.settings import VoxSettings, materials_of
+
+
+def test_one_code_for_two_materials_is_refused() -> None:
+    with pytest.raises(ValueError, match="expected one material for each code, found 2 for 4"):
+        Vox(palette=(soft(4), soft(2), soft(4)))
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"code": 0}, "'code' must be >= 1"),
+        ({"code": 256}, "'code' must be <= 255"),
+        ({"youngs_modulus": 0.0}, "'youngs_modulus' must be > 0.0"),
+        ({"poisson_ratio": 0.5}, "'poisson_ratio' must be < 0.5"),
+        ({"poisson_ratio": -0.1}, "'poisson_ratio' must be >= 0.0"),
+        ({"density": -1.0}, "'density' must be > 0.0"),
+        ({"static_friction": -1.0}, "'static_friction' must be >= 0.0"),
+        ({"name": "two\nlines"}, "'name' must be one line of printable characters"),
+    ],
+)
+def test_a_value_out_of_range_is_refused_by_name(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        attrs.evolve(soft(1), **changed)
+
+
+def test_codes_are_described_in_their_order_with_the_names_that_there_are() -> None:
+    assert described(materials_of(VoxSettings())) == "0 empty, 1 passive, 3 contractile"
+    assert described({9: soft(9), 2: soft(2, name="gel")}) == "0 empty, 2 gel, 9"
+    assert described({}) == "0 empty"
+
+
+def test_the_solver_is_given_every_value() -> None:
+    values = {"youngs_modulus": 2.0, "poisson_ratio": 0.1, "density": 3.0, "static_friction": 4.0}
+    [(code, given)] = solver_palette({7: soft(7, **values, expansion_coefficient=5.0)}).items()
+    assert code == 7
+    assert attrs.asdict(given) == {**values, "expansion": 5.0, "dynamic_friction": 0.5}
+
+
+@given(st.floats(allow_nan=False))
+def test_single_precision_rounds_once(value: float) -> None:
+    rounded = single(value)
+    assert single(rounded) == rounded
+    if abs(value) < 1e38:
+        assert abs(rounded - value) <= np.spacing(np.float32(abs(rounded))) / 2
+
+
+def test_what_single_precision_cannot_hold_is_infinite() -> None:
+    assert single(1e300) == np.inf

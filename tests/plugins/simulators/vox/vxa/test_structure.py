@@ -1,0 +1,104 @@
+"""The body in a VXA file: layers of characters and of offsets."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from hypothesis.extra import numpy as arrays
+from lxml import etree
+from numpy.typing import NDArray
+
+from evoframe import InputError
+from evoframe_simulators.vox.vxa.sections import Section
+from evoframe_simulators.vox.vxa.structure import canvas_in, material_in, phase_in
+
+OF_9 = "the palette has 9, and 0 is empty"
+
+canvases = st.tuples(*[st.integers(1, 4)] * 3)
+
+
+def structure(data: list[str], tag: str = "Data") -> Section:
+    """Return a structure with one layer for each text."""
+    section = etree.Element("Structure")
+    parent = etree.SubElement(section, tag)
+    for text in data:
+        etree.SubElement(parent, "Layer").text = text
+    return Section(section, "Structure")
+
+
+def layers(cells: NDArray[np.generic]) -> list[list[str]]:
+    """Return the cells of each z as texts, x fastest."""
+    x, y, z = cells.shape
+    return [[str(cells[i, j, k]) for j in range(y) for i in range(x)] for k in range(z)]
+
+
+@given(material=canvases.flatmap(lambda shape: arrays.arrays(np.uint8, shape, elements=st.integers(0, 60))))
+def test_cells_are_read_x_fastest_then_y_then_z(material: NDArray[np.uint8]) -> None:
+    material[0, 0, 0] = 1
+    texts = ["".join(chr(48 + int(code)) for code in layer) for layer in layers(material)]
+    x, y, z = material.shape
+    read = material_in(structure(texts), (x, y, z), 60)
+    assert read.dtype == np.uint8
+    assert (read == material).all()
+
+
+@given(
+    phase=canvases.flatmap(lambda shape: arrays.arrays(np.float64, shape, elements=st.floats(-1e6, 1e6))),
+    end=st.sampled_from(["", ","]),
+)
+def test_offsets_are_read_as_they_were_written(phase: NDArray[np.float64], end: str) -> None:
+    texts = [", ".join(layer) + end for layer in layers(phase)]
+    x, y, z = phase.shape
+    assert (phase_in(structure(texts, "PhaseOffset"), (x, y, z)) == phase).all()
+
+
+def test_without_offsets_they_are_0() -> None:
+    assert (phase_in(structure(["1"]), (2, 1, 3)) == np.zeros((2, 1, 3))).all()
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (["11"], "Structure/Data has 1 layers; expected Z_Voxels = 2"),
+        (["11", "1"], "Structure/Data/Layer 2 has 1 cells; expected 2 x 1"),
+        (
+            ["11", "1:"],
+            "Structure/Data/Layer 2 has the cell ':', material 10; the palette has 9, and 0 is empty",
+        ),
+        (
+            ["1/", "11"],
+            "Structure/Data/Layer 1 has the cell '/', material -1; the palette has 9, and 0 is empty",
+        ),
+        (["00", "00"], "Structure has no voxel"),
+    ],
+)
+def test_cells_that_are_none_are_refused_with_their_layer(data: list[str], message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        material_in(structure(data), (2, 1, 2), 9)
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (["0,0,0"], "Structure/PhaseOffset/Layer 1 has 3 offsets; expected 2 x 1"),
+        (["0,"], "Structure/PhaseOffset/Layer 1 has 1 offsets; expected 2 x 1"),
+        (["0,x"], "Structure/PhaseOffset/Layer 1 has the offset 'x'; expected a finite number"),
+        (["0,1e7"], "Structure/PhaseOffset has the value 1e+07; at most 1e+06 cycles"),
+    ],
+)
+def test_offsets_that_are_none_are_refused_with_their_layer(data: list[str], message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        phase_in(structure(data, "PhaseOffset"), (2, 1, 1))
+    assert str(caught.value) == message
+
+
+def test_a_canvas_has_as_many_cells_as_the_solver_takes() -> None:
+    def lengths(*voxels: int) -> Section:
+        text = "".join(f"<{axis}_Voxels>{n}</{axis}_Voxels>" for axis, n in zip("XYZ", voxels, strict=True))
+        return Section(etree.fromstring(f"<Structure>{text}</Structure>"), "Structure")
+
+    assert canvas_in(lengths(2**8, 2**8, 2**8)) == (2**8, 2**8, 2**8)
+    with pytest.raises(InputError, match=r"^Structure has 16777217 x 1 x 1 = 16777217 cells; at most"):
+        canvas_in(lengths(2**24 + 1, 1, 1))
