@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
-SOURCES := pyproject.toml setup.py extensions.py $(wildcard lib*/*.c lib*/*.h lib*/*.py lib*/include/*.h)
+SOURCES := pyproject.toml setup.py extensions.py $(wildcard lib*/*.[ch] lib*/*/*.[ch] lib*/*/*.py)
 
 .PHONY: run test lint types imports unit browser sanitize fuzz clean
 

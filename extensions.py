@@ -39,14 +39,15 @@ def extension(folder: str, name: str) -> FFI:
     unix = os.name != "nt"
     library = HERE / folder
     header = library / "include" / f"{name}.h"
+    package = library / f"evoframe_{folder}"  # where cffi may have left the C code of an extension
     ffi = FFI()
     ffi.cdef(declarations(header))
     ffi.set_source(
-        f"evoframe_{folder}._{name}",
+        f"{package.name}._{name}",
         PREAMBLE.replace("{header}", header.name),
-        sources=[str(path) for path in sorted(library.glob("*.c"))],
-        depends=[str(path) for path in (*library.glob("*.h"), header)],
-        include_dirs=[str(header.parent)],
+        sources=[str(path) for path in sorted(library.rglob("*.c")) if package not in path.parents],
+        depends=[str(path) for path in sorted(library.rglob("*.h"))],
+        include_dirs=[str(header.parent), str(library)],
         extra_compile_args=[*FLAGS, *(SANITIZE_FLAGS if sanitize else ())] if unix else [],
         extra_link_args=["-fsanitize=address,undefined"] if sanitize else [],
         libraries=["m"] if unix else [],

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "internal.h"
-#include "lanes.h"
+#include "kernels/lanes.h"
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */

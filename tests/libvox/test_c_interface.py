@@ -212,9 +212,10 @@ def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> N
 def test_a_program_in_c_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc")
     assert compiler, "this test needs the C compiler cc, as the installation did"
-    sources = [str(path) for path in sorted((ROOT / "libvox").glob("*.c"))]
+    library = ROOT / "libvox"
+    sources = [str(path) for folder in ("*.c", "*/*.c") for path in sorted(library.glob(folder))]
     program = str(tmp_path / "embed")
-    include = ["-I", str(ROOT / "libvox" / "include")]
+    include = ["-I", str(library / "include"), "-I", str(library)]
     embed = str(ROOT / "tests" / "libvox" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
     said = subprocess.run([program], check=True, capture_output=True, text=True).stdout
