@@ -97,12 +97,6 @@ enum vox_status body_census(const vox_model *model, const uint8_t *material, str
 
 /* ---- slots ------------------------------------------------------------------------------------------------ */
 
-int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards)
-{
-    if (body->coordinates[slot][axis] == (upwards ? body->census.length[axis] - 1 : 0)) return -1;
-    return upwards ? slot + body->step[axis] : slot - body->step[axis];
-}
-
 /* Those after the box too: a tile's upper ends may lie there. */
 static int64_t slots_in_all(const struct body *body)
 {

@@ -326,6 +326,13 @@ static inline const struct coupling *coupling_of(const struct body *body, int64_
     return &body->model->couplings[v->substance[lower] * body->model->n_substances + v->substance[upper]];
 }
 
+/* Slot of the cell beside a slot (upwards or not), or -1 beyond the box. */
+static inline int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards)
+{
+    if (body->coordinates[slot][axis] == (upwards ? body->census.length[axis] - 1 : 0)) return -1;
+    return upwards ? slot + body->step[axis] : slot - body->step[axis];
+}
+
 static inline struct vec velocity_of(const struct voxels *v, int64_t slot)
 {
     return vec_scale(v->mobility[slot], vec_at(v->momentum, slot));
@@ -350,9 +357,6 @@ enum vox_status body_shape(struct body *body, const vox_model *model, const stru
                            const uint8_t *material);
 /* Puts the body at rest at time 0. */
 void body_rest(struct body *body, const double *phase_cycles);
-
-/* Slot of the cell beside a slot (upwards or not), or -1 beyond the box. */
-int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards);
 
 /* bond.c */
 
