@@ -10,7 +10,10 @@ from cffi import FFI
 
 HERE = Path(__file__).parent  # relative to the project's root, as setuptools wants its sources
 # No contraction to fused multiply-adds: results would depend on the compiler's choice of them.
-FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
+FLAGS = (
+    *("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"),
+    "-fvisibility=hidden",  # an extension shows nothing but how it is imported
+)
 SANITIZE_FLAGS = (
     *("-O1", "-g", "-fno-omit-frame-pointer"),
     *("-fsanitize=address,undefined", "-fno-sanitize-recover=all"),

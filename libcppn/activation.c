@@ -50,7 +50,7 @@ IN_LOOP void map(formula *f, double bias, double response, int64_t n, double *su
         sums[i] = guarded(f(guarded(bias + response * sums[i])));
 }
 
-void activate(enum cppn_activation activation, double bias, double response, int64_t n, double *sums)
+void cppn_activate(enum cppn_activation activation, double bias, double response, int64_t n, double *sums)
 {
     switch (activation) {
     case CPPN_SIGMOID: map(sigmoid, bias, response, n, sums); return;

@@ -129,7 +129,7 @@ static void add_term(cppn_network *network, struct value source, double weight)
 
 static struct value constant(const struct cppn_node *node, double sum)
 {
-    activate((enum cppn_activation)node->activation, node->bias, node->response, 1, &sum);
+    cppn_activate((enum cppn_activation)node->activation, node->bias, node->response, 1, &sum);
     return (struct value){.place = NOWHERE, .constant = sum};
 }
 

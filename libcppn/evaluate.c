@@ -46,7 +46,7 @@ static void take_step(const struct step *step, const struct term *terms, int64_t
         else
             add_weighted(term->factor, n, values + term->place * BLOCK, own);
     }
-    activate(step->activation, step->bias, step->response, n, own);
+    cppn_activate(step->activation, step->bias, step->response, n, own);
 }
 
 static void write_outputs(const cppn_network *network, int64_t n, const double *restrict values,

@@ -1,4 +1,5 @@
-/* What the files of the library share: the compiled network, and the step from a sum to a node's value. */
+/* What the files of the library share: the compiled network, and the step from a sum to a node's value.
+ * What the linker sees begins with cppn_, here too. */
 #ifndef CPPN_INTERNAL_H
 #define CPPN_INTERNAL_H
 
@@ -62,6 +63,6 @@ IN_LOOP double guarded(double z)
 }
 
 /* Replace the sums of n points by the node's values there. */
-void activate(enum cppn_activation activation, double bias, double response, int64_t n, double *sums);
+void cppn_activate(enum cppn_activation activation, double bias, double response, int64_t n, double *sums);
 
 #endif

@@ -69,7 +69,7 @@ static void widen(struct census *census, const struct cursor *cursor)
     }
 }
 
-enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census)
+enum vox_status vox_body_census(const vox_model *model, const uint8_t *material, struct census *census)
 {
     double fastest_bond = 0.0, fastest_voxel = 0.0;
     *census = (struct census){0};
@@ -311,7 +311,7 @@ static void set_box(struct body *body)
     body->n_tiles = (body->n_slots + TILE - 1) / TILE;
 }
 
-enum vox_status body_shape(struct body *body, const vox_model *model, const struct census *census,
+enum vox_status vox_body_shape(struct body *body, const vox_model *model, const struct census *census,
                            const uint8_t *material)
 {
     body->model = model;
@@ -324,8 +324,8 @@ enum vox_status body_shape(struct body *body, const vox_model *model, const stru
     place_starts(body);
     place_voxels(body, material);
     place_bonds(body, material);
-    if (model->settings.fluid_drag > 0.0) status = surface_shape(body);
-    if (status == VOX_OK && model->settings.self_collision) status = contacts_shape(body);
+    if (model->settings.fluid_drag > 0.0) status = vox_surface_shape(body);
+    if (status == VOX_OK && model->settings.self_collision) status = vox_contacts_shape(body);
     return status;
 }
 
@@ -357,7 +357,7 @@ static void rest_bonds(struct bonds *bonds, int64_t n)
     clear(bonds->upper, n);
 }
 
-void body_rest(struct body *body, const double *phase_cycles)
+void vox_body_rest(struct body *body, const double *phase_cycles)
 {
     struct voxels *v = &body->voxels;
     const int64_t n = slots_in_all(body);
@@ -378,7 +378,7 @@ void body_rest(struct body *body, const double *phase_cycles)
     }
     for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
     body->time = body->top_speed = body->farthest = 0.0;
-    if (body->model->settings.self_collision) contacts_rest(body);
+    if (body->model->settings.self_collision) vox_contacts_rest(body);
 }
 
 /* ---- bodies that are used again --------------------------------------------------------------------------- */
@@ -386,13 +386,13 @@ void body_rest(struct body *body, const double *phase_cycles)
 static void body_destroy(struct body *body)
 {
     if (!body) return;
-    contacts_destroy(&body->contacts);
-    surface_destroy(&body->surface);
+    vox_contacts_destroy(&body->contacts);
+    vox_surface_destroy(&body->surface);
     free(body->memory);
     free(body);
 }
 
-struct body *body_take(const vox_model *model)
+struct body *vox_body_take(const vox_model *model)
 {
     for (int i = 0; i < MOST_SPARES; i++) {
         struct body *spare = atomic_exchange(&model->spares->bodies[i], NULL);
@@ -401,7 +401,7 @@ struct body *body_take(const vox_model *model)
     return calloc(1, sizeof(struct body));
 }
 
-void body_return(const vox_model *model, struct body *body)
+void vox_body_return(const vox_model *model, struct body *body)
 {
     if (body && body->memory_size > LARGEST_SPARE) {
         body_destroy(body);
@@ -412,7 +412,7 @@ void body_return(const vox_model *model, struct body *body)
     body_destroy(body);
 }
 
-void bodies_destroy(vox_model *model)
+void vox_bodies_destroy(vox_model *model)
 {
     for (int i = 0; i < MOST_SPARES && model->spares; i++) body_destroy(model->spares->bodies[i]);
     free(model->spares);

@@ -44,7 +44,7 @@ static int64_t most_contacts(struct body *body)
     return most;
 }
 
-bool next_step_is_harmless(struct body *body)
+bool vox_next_step_is_harmless(struct body *body)
 {
     const vox_model *model = body->model;
     const struct vox_settings *s = &model->settings;

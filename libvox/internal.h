@@ -1,5 +1,5 @@
 /* What the files of the solver share: the derived constants and the state of one body.
- * Section numbers are those of docs/physics.md. */
+ * Section numbers are those of docs/physics.md. What the linker sees begins with vox_, here too. */
 #ifndef VOX_INTERNAL_H
 #define VOX_INTERNAL_H
 
@@ -341,22 +341,22 @@ static inline struct vec velocity_of(const struct voxels *v, int64_t slot)
 /* body.c */
 
 /* Checks the material codes of a body and counts what it is made of. */
-enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census);
+enum vox_status vox_body_census(const vox_model *model, const uint8_t *material, struct census *census);
 
 /* A body to be shaped, which may have been used before; NULL if there is no memory. Threads may ask at the same time. */
-struct body *body_take(const vox_model *model);
+struct body *vox_body_take(const vox_model *model);
 
 /* Gives it back. */
-void body_return(const vox_model *model, struct body *body);
+void vox_body_return(const vox_model *model, struct body *body);
 
 /* Frees what was given back. */
-void bodies_destroy(vox_model *model);
+void vox_bodies_destroy(vox_model *model);
 
 /* Makes a body one of these materials; its memory is kept where it is large enough. */
-enum vox_status body_shape(struct body *body, const vox_model *model, const struct census *census,
+enum vox_status vox_body_shape(struct body *body, const vox_model *model, const struct census *census,
                            const uint8_t *material);
 /* Puts the body at rest at time 0. */
-void body_rest(struct body *body, const double *phase_cycles);
+void vox_body_rest(struct body *body, const double *phase_cycles);
 
 /* bond.c */
 
@@ -365,7 +365,7 @@ struct tension {
     double energy;         /* J */
     double least, greatest; /* strain */
 };
-struct tension bonds_tension(const struct body *body);
+struct tension vox_bonds_tension(const struct body *body);
 
 /* motion.c */
 
@@ -376,18 +376,18 @@ struct actuation {
     double gain;   /* share of the amplitude; 0 before the start */
     double cycles; /* without the phase */
 };
-struct actuation actuation_at(const vox_model *model, double time);
+struct actuation vox_actuation_at(const vox_model *model, double time);
 
 /* Adds slow damping and weight to the force on a voxel. */
-void voxel_load(struct body *body, int64_t slot);
+void vox_voxel_load(struct body *body, int64_t slot);
 
 /* Moves a voxel by one time step under all forces; raises the body's top speed and its farthest way. False if it has
  * diverged. */
-bool voxel_advance(struct body *body, int64_t slot);
+bool vox_voxel_advance(struct body *body, int64_t slot);
 
 /* The reference kernel: bond.c and motion.c. */
-bool scalar_bonds_apply(struct body *body, double per_second);
-bool scalar_voxels_advance(struct body *body);
+bool vox_scalar_bonds_apply(struct body *body, double per_second);
+bool vox_scalar_voxels_advance(struct body *body);
 
 /* kernels.c */
 
@@ -402,10 +402,10 @@ struct kernel {
     bool (*voxels_advance)(struct body *body);
 };
 
-extern const struct kernel generic_kernel, avx2_kernel, avx512_kernel;
+extern const struct kernel vox_generic_kernel, vox_avx2_kernel, vox_avx512_kernel;
 
 /* The kernel of a number, or NULL if there is none that this processor can use. */
-const struct kernel *kernel_of(int32_t number);
+const struct kernel *vox_kernel_of(int32_t number);
 
 /* Where the compiler can be told the instructions of a part of a file. */
 #if defined(__x86_64__) && !defined(_WIN32) && !defined(__clang__) && defined(__GNUC__) && __GNUC__ >= 8
@@ -415,80 +415,80 @@ const struct kernel *kernel_of(int32_t number);
 /* vicinity.c */
 
 /* The places within so many bonds, and the cells closer than so many edges. To be destroyed in any case. */
-enum vox_status vicinity_create(struct vicinity *vicinity, int64_t hops, double radius);
-void vicinity_destroy(struct vicinity *vicinity);
+enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, double radius);
+void vox_vicinity_destroy(struct vicinity *vicinity);
 
 /* Index of a place, or -1 if it is too far. */
-int64_t vicinity_index(const struct vicinity *vicinity, const int32_t by[3]);
+int64_t vox_vicinity_index(const struct vicinity *vicinity, const int32_t by[3]);
 
 /* contact_near.c */
 
 /* Room for so many pairs; those that are there may be lost. */
-bool pairs_reserve(struct pairs *pairs, int64_t capacity);
+bool vox_pairs_reserve(struct pairs *pairs, int64_t capacity);
 
 /* Lists all pairs of the skin in near cells that may collide, sorted. */
-enum vox_status near_by_shape(const struct body *body, struct near_by *near_by);
-void near_by_destroy(struct near_by *near_by);
+enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_by);
+void vox_near_by_destroy(struct near_by *near_by);
 
 /* Whether two voxels, first < second, may ever be listed: bonds do not join them closely, and one can move. */
-bool near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair);
+bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair);
 
 /* contact_list.c */
 
 /* Distance beyond which no pair is listed at any time, m. */
-double contacts_reach(const vox_model *model);
+double vox_contacts_reach(const vox_model *model);
 
 /* A voxel that is further from its start, in lattice edges, has strayed. */
 #define STRAYED 0.35
 
-enum vox_status contacts_shape(struct body *body);
-void contacts_rest(struct body *body);
-void contacts_destroy(struct contacts *contacts);
+enum vox_status vox_contacts_shape(struct body *body);
+void vox_contacts_rest(struct body *body);
+void vox_contacts_destroy(struct contacts *contacts);
 
 /* Makes the list of possible contacts anew where that is due; false if there are too many. */
-bool contacts_refresh(struct body *body, bool first_step);
+bool vox_contacts_refresh(struct body *body, bool first_step);
 
 /* contact_grid.c */
 
-enum vox_status grid_shape(struct grid *grid, int64_t n_skin);
-void grid_destroy(struct grid *grid);
-void grid_fill(struct grid *grid, const struct body *body, double reach);
+enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin);
+void vox_grid_destroy(struct grid *grid);
+void vox_grid_fill(struct grid *grid, const struct body *body, double reach);
 
 /* Writes the skin after a voxel that is in reach of it to `found`, ascending, and returns how many there are. */
-int64_t grid_find(const struct grid *grid, const struct body *body, int32_t first);
+int64_t vox_grid_find(const struct grid *grid, const struct body *body, int32_t first);
 
 /* contact_force.c */
 
 /* Adds the forces of all contacts to their voxels. */
-void contacts_apply(struct body *body);
+void vox_contacts_apply(struct body *body);
 
 /* surface.c */
 
-enum vox_status surface_shape(struct body *body);
-void surface_destroy(struct surface *surface);
+enum vox_status vox_surface_shape(struct body *body);
+void vox_surface_destroy(struct surface *surface);
 
 /* fluid.c */
 
 /* Adds the drag of the fluid to the voxels at the surface. */
-void fluid_apply(struct body *body);
+void vox_fluid_apply(struct body *body);
 
 /* floor.c */
 
 /* Adds the push and the friction of the floor to the force on a voxel, which has all others already; a voxel that
  * sticks loses its lateral momentum. */
-void floor_apply(struct body *body, int64_t slot);
+void vox_floor_apply(struct body *body, int64_t slot);
 
 /* harmless.c */
 
 /* Whether the next step, the list of its contacts being made, cannot lead a body to what counts as diverged. */
-bool next_step_is_harmless(struct body *body);
+bool vox_next_step_is_harmless(struct body *body);
 
 /* sample.c */
 
 /* Writes one sample of every track that is wanted; `row` counts the samples of the whole batch. */
-void sample_write(const struct body *body, const struct vox_tracks *tracks, int64_t row);
+void vox_sample_write(const struct body *body, const struct vox_tracks *tracks, int64_t row);
 
 /* Writes that there is nothing. */
-void sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks, int64_t begin, int64_t end);
+void vox_sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks, int64_t begin, int64_t end);
 
 #endif

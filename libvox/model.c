@@ -67,7 +67,7 @@ static enum vox_status check_settings(const struct vox_settings *s)
     if (status == VOX_OK) status = check_surroundings(s);
     if (status == VOX_OK) status = check_contacts(s);
     if (status != VOX_OK) return status;
-    if (!kernel_of(s->kernel)) return VOX_BAD_KERNEL;
+    if (!vox_kernel_of(s->kernel)) return VOX_BAD_KERNEL;
     if (!(s->largest_strain > 0.0 && s->largest_strain <= FARTHEST)) return VOX_BAD_LARGEST_STRAIN;
     if (!(s->largest_distance > 0.0 && s->largest_distance <= FARTHEST)) return VOX_BAD_LARGEST_DISTANCE;
     return VOX_OK;
@@ -225,7 +225,7 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     const struct vox_settings *s = &model->settings;
     const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);
     const enum vox_status built =
-        vicinity_create(&model->vicinity, hops, (contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
+        vox_vicinity_create(&model->vicinity, hops, (vox_contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
     if (built != VOX_OK) return built;
     return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }
@@ -245,7 +245,7 @@ enum vox_status vox_model_create(const struct vox_settings *settings, const stru
     vox_model *made = calloc(1, sizeof *made);
     if (!made) return VOX_NO_MEMORY;
     made->settings = *settings;
-    made->kernel = kernel_of(settings->kernel);
+    made->kernel = vox_kernel_of(settings->kernel);
     status = fill(made, palette, n_codes, fixed, culprit);
     if (status != VOX_OK) {
         vox_model_destroy(made);
@@ -261,7 +261,7 @@ void vox_model_destroy(vox_model *model)
     free(model->substances);
     free(model->couplings);
     free(model->fixed);
-    vicinity_destroy(&model->vicinity);
-    bodies_destroy(model);
+    vox_vicinity_destroy(&model->vicinity);
+    vox_bodies_destroy(model);
     free(model);
 }

@@ -112,7 +112,7 @@ static void count_touching(struct body *body, double half_envelope)
     }
 }
 
-void contacts_apply(struct body *body)
+void vox_contacts_apply(struct body *body)
 {
     const struct vox_settings *s = &body->model->settings;
     const bool elastic = s->contact_damping == 0.0 && !s->contact_friction;

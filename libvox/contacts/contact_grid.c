@@ -7,9 +7,9 @@
 static const double ROUNDING = 1e-12;
 static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body that is spread widely gets wider cubes */
 
-enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
+enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin)
 {
-    grid_destroy(grid);
+    vox_grid_destroy(grid);
     grid->n_skin = n_skin;
     grid->most_cubes = CUBES_PER_VOXEL * n_skin + 1;
     grid->begin = malloc((size_t)(grid->most_cubes + 1) * sizeof *grid->begin);
@@ -20,7 +20,7 @@ enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
     return grid->begin && grid->voxels && grid->packed && grid->cube_of && grid->found ? VOX_OK : VOX_NO_MEMORY;
 }
 
-void grid_destroy(struct grid *grid)
+void vox_grid_destroy(struct grid *grid)
 {
     free(grid->begin);
     free(grid->voxels);
@@ -85,7 +85,7 @@ static int64_t cube_at(const struct grid *grid, const int64_t place[3])
     return place[0] + grid->length[0] * (place[1] + grid->length[1] * place[2]);
 }
 
-void grid_fill(struct grid *grid, const struct body *body, double reach)
+void vox_grid_fill(struct grid *grid, const struct body *body, double reach)
 {
     const struct span span = span_of(body);
     grid->reach = reach;
@@ -133,7 +133,7 @@ static void sort(int32_t *slots, int64_t n)
     }
 }
 
-int64_t grid_find(const struct grid *grid, const struct body *body, int32_t first)
+int64_t vox_grid_find(const struct grid *grid, const struct body *body, int32_t first)
 {
     double at[3];
     int64_t from[3], to[3], n = 0;

@@ -118,13 +118,13 @@ static void set_offset(const struct body *body, struct pair pair, int32_t by[3])
     for (int axis = 0; axis < 3; axis++) by[axis] = to[axis] - from[axis];
 }
 
-bool near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair)
+bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair)
 {
     const uint8_t *fixed = body->voxels.fixed;
     if (fixed[pair.first] == VOX_FIX_ALL && fixed[pair.second] == VOX_FIX_ALL) return false;
     int32_t by[3];
     set_offset(body, pair, by);
-    const int64_t place = vicinity_index(&body->model->vicinity, by);
+    const int64_t place = vox_vicinity_index(&body->model->vicinity, by);
     if (place >= 0 && is_set(near_by->joined + place * words_of(body), pair.first)) return false;
     return !is_joined_around(body, &near_by->search, pair, by);
 }
@@ -196,7 +196,7 @@ static void mark_skin(const struct body *body, const struct near_by *near_by)
     }
 }
 
-bool pairs_reserve(struct pairs *pairs, int64_t capacity)
+bool vox_pairs_reserve(struct pairs *pairs, int64_t capacity)
 {
     if (pairs->list && capacity <= pairs->capacity) return true;
     free(pairs->list);
@@ -234,7 +234,7 @@ static bool allocate(const struct body *body, struct near_by *near_by)
            near_by->search.reached && near_by->search.queue;
 }
 
-enum vox_status near_by_shape(const struct body *body, struct near_by *near_by)
+enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_by)
 {
     if (!allocate(body, near_by)) return VOX_NO_MEMORY;
     join_all(body, near_by);
@@ -242,13 +242,13 @@ enum vox_status near_by_shape(const struct body *body, struct near_by *near_by)
     visit(body, near_by, near_by->begin + 1, NULL);
     for (int64_t slot = 0; slot < body->n_slots; slot++) near_by->begin[slot + 1] += near_by->begin[slot];
     near_by->pairs.n = near_by->begin[body->n_slots];
-    if (!pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
+    if (!vox_pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
     visit(body, near_by, near_by->begin, near_by->pairs.list);
     drop_joined(body, near_by);
     return VOX_OK;
 }
 
-void near_by_destroy(struct near_by *near_by)
+void vox_near_by_destroy(struct near_by *near_by)
 {
     free_bits(near_by);
     free(near_by->pairs.list);

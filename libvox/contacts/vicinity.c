@@ -10,7 +10,7 @@ static int64_t steps_to(const int32_t by[3])
 
 /* ---- the places within a few bonds ------------------------------------------------------------------------ */
 
-int64_t vicinity_index(const struct vicinity *vicinity, const int32_t by[3])
+int64_t vox_vicinity_index(const struct vicinity *vicinity, const int32_t by[3])
 {
     const int64_t hops = vicinity->hops, width = 2 * hops + 1;
     if (steps_to(by) > hops) return -1;
@@ -25,7 +25,7 @@ static void find_ways(const struct vicinity *vicinity, struct place *place)
         const bool upwards = place->by[axis] > 0;
         int32_t before[] = {place->by[0], place->by[1], place->by[2]};
         before[axis] += upwards ? -1 : 1;
-        place->from[place->n_ways] = (int32_t)vicinity_index(vicinity, before);
+        place->from[place->n_ways] = (int32_t)vox_vicinity_index(vicinity, before);
         place->side[place->n_ways++] = 2 * axis + upwards;
     }
 }
@@ -66,13 +66,13 @@ static void append_cells(struct vicinity *vicinity, double radius)
                 if (!leads_on(x, y, z) || !((double)(x * x + y * y + z * z) < radius * radius)) continue;
                 struct near_cell *cell = &vicinity->cells[vicinity->n_cells++];
                 *cell = (struct near_cell){.by = {x, y, z}};
-                cell->place = (int32_t)vicinity_index(vicinity, cell->by);
+                cell->place = (int32_t)vox_vicinity_index(vicinity, cell->by);
             }
         }
     }
 }
 
-enum vox_status vicinity_create(struct vicinity *vicinity, int64_t hops, double radius)
+enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, double radius)
 {
     const size_t width = 2 * (size_t)hops + 1, most = (size_t)radius;
     const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3; /* of an octahedron */
@@ -87,7 +87,7 @@ enum vox_status vicinity_create(struct vicinity *vicinity, int64_t hops, double 
     return VOX_OK;
 }
 
-void vicinity_destroy(struct vicinity *vicinity)
+void vox_vicinity_destroy(struct vicinity *vicinity)
 {
     free(vicinity->index);
     free(vicinity->places);

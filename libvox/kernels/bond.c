@@ -206,7 +206,7 @@ IN_LOOP bool bonds_along(const struct body *body, enum axis axis, double most, d
     return fine;
 }
 
-bool scalar_bonds_apply(struct body *body, double per_second)
+bool vox_scalar_bonds_apply(struct body *body, double per_second)
 {
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;
@@ -240,7 +240,7 @@ static void add_tension(const struct body *body, enum axis axis, struct tension 
     }
 }
 
-struct tension bonds_tension(const struct body *body)
+struct tension vox_bonds_tension(const struct body *body)
 {
     const bool any = body->census.n_bonds > 0;
     struct tension tension = {0.0, any ? HUGE_VAL : 0.0, any ? -HUGE_VAL : 0.0};

@@ -15,5 +15,5 @@ static bool avx512_usable(void)
            __builtin_cpu_supports("avx512bw");
 }
 
-const struct kernel avx512_kernel = VECTOR_KERNEL("avx512", avx512_usable);
+const struct kernel vox_avx512_kernel = VECTOR_KERNEL("avx512", avx512_usable);
 #endif

@@ -3,7 +3,7 @@
 
 static const double SETTLING = 0.5; /* share of the time until the start in which a size takes to the rounded edge */
 
-struct actuation actuation_at(const vox_model *model, double time)
+struct actuation vox_actuation_at(const vox_model *model, double time)
 {
     const struct vox_settings *s = &model->settings;
     struct actuation a = {.edge = s->voxel_size, .rest = model->rest_scale, .cycles = time / s->period};
@@ -67,7 +67,7 @@ static void hold(const struct voxels *v, int64_t i)
     vec_put(v->spin, i, (struct vec){0.0, 0.0, 0.0});
 }
 
-void voxel_load(struct body *body, int64_t slot)
+void vox_voxel_load(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
     const struct vec drag = vec_scale(-v->drag_rate[slot], vec_at(v->momentum, slot));
@@ -98,22 +98,22 @@ static bool voxel_move(struct body *body, int64_t slot)
 }
 
 /* The floor comes last, since friction looks at all other forces. */
-bool voxel_advance(struct body *body, int64_t slot)
+bool vox_voxel_advance(struct body *body, int64_t slot)
 {
-    voxel_load(body, slot);
-    if (body->model->settings.floor) floor_apply(body, slot);
+    vox_voxel_load(body, slot);
+    if (body->model->settings.floor) vox_floor_apply(body, slot);
     return voxel_move(body, slot);
 }
 
-bool scalar_voxels_advance(struct body *body)
+bool vox_scalar_voxels_advance(struct body *body)
 {
     const struct voxels *v = &body->voxels;
-    const struct actuation actuation = actuation_at(body->model, body->time);
+    const struct actuation actuation = vox_actuation_at(body->model, body->time);
     bool fine = true;
     body->top_speed = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
-        if (v->fixed[slot] != VOX_FIX_ALL) fine &= voxel_advance(body, slot);
+        if (v->fixed[slot] != VOX_FIX_ALL) fine &= vox_voxel_advance(body, slot);
         v->size[slot] = size_of(&actuation, v->amplitude[slot], v->phase[slot], v->size[slot]);
         vec_put(v->force, slot, (struct vec){0.0, 0.0, 0.0});
         vec_put(v->torque, slot, (struct vec){0.0, 0.0, 0.0});

@@ -56,8 +56,8 @@ static void stand_tile(struct body *body, int64_t base)
 {
     for (int64_t slot = base; slot < base + TILE; slot++) {
         if (body->voxels.mobile[slot] == 0.0) continue;
-        voxel_load(body, slot);
-        floor_apply(body, slot);
+        vox_voxel_load(body, slot);
+        vox_floor_apply(body, slot);
     }
 }
 
@@ -120,7 +120,7 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
 static bool advance_partly_held(struct body *body)
 {
     bool fine = true;
-    for (int64_t i = 0; i < body->n_partly; i++) fine &= voxel_advance(body, body->partly[i]);
+    for (int64_t i = 0; i < body->n_partly; i++) fine &= vox_voxel_advance(body, body->partly[i]);
     return fine;
 }
 
@@ -143,7 +143,7 @@ static double raised(double number, const double *squares)
 
 static bool VECTOR(voxels_advance)(struct body *body)
 {
-    const struct actuation actuation = actuation_at(body->model, body->time);
+    const struct actuation actuation = vox_actuation_at(body->model, body->time);
     const double swing = sine(TWO_PI * actuation.cycles), sway = cosine(TWO_PI * actuation.cycles);
     struct extremes extremes = {{0.0}, {0.0}};
     int64_t lost = 0;

@@ -20,7 +20,7 @@ static struct vec rub(struct body *body, int64_t slot, struct vec force, double 
     return (struct vec){0.0, 0.0, force.z};
 }
 
-void floor_apply(struct body *body, int64_t slot)
+void vox_floor_apply(struct body *body, int64_t slot)
 {
     const struct substance *s = substance_of_voxel(body, slot);
     const struct voxels *v = &body->voxels;

@@ -35,7 +35,7 @@ static struct vec triangle_drag(double coefficient, struct vec a, struct vec b, 
     return vec_scale(-0.5 * coefficient * speed * speed, doubled);
 }
 
-void fluid_apply(struct body *body)
+void vox_fluid_apply(struct body *body)
 {
     const double coefficient = body->model->settings.fluid_drag;
     const struct vec *corners = body->surface.corners;

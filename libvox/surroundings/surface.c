@@ -149,11 +149,11 @@ static enum vox_status place_facets(struct body *body)
     return enough ? VOX_OK : VOX_NO_MEMORY;
 }
 
-enum vox_status surface_shape(struct body *body)
+enum vox_status vox_surface_shape(struct body *body)
 {
     struct surface *surface = &body->surface;
     const size_t n = (size_t)body->census.n_voxels;
-    surface_destroy(surface);
+    vox_surface_destroy(surface);
     *surface = (struct surface){0};
     surface->corners_of = malloc((size_t)body->n_slots * sizeof *surface->corners_of);
     surface->share = malloc(8 * n * sizeof *surface->share);
@@ -164,7 +164,7 @@ enum vox_status surface_shape(struct body *body)
     return place_facets(body);
 }
 
-void surface_destroy(struct surface *surface)
+void vox_surface_destroy(struct surface *surface)
 {
     free(surface->corners_of);
     free(surface->share);

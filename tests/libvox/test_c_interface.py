@@ -6,12 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from symbols import ROOT, sources_of
 
 import evoframe_libvox
 from evoframe_libvox._vox import ffi, lib
-
-ROOT = Path(__file__).parent.parent.parent
-
 
 FIELDS = {
     "nx": 2,
@@ -212,10 +210,9 @@ def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> N
 def test_a_program_in_c_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc")
     assert compiler, "this test needs the C compiler cc, as the installation did"
-    library = ROOT / "libvox"
-    sources = [str(path) for folder in ("*.c", "*/*.c") for path in sorted(library.glob(folder))]
+    sources = map(str, sources_of("libvox"))
     program = str(tmp_path / "embed")
-    include = ["-I", str(library / "include"), "-I", str(library)]
+    include = ["-I", str(ROOT / "libvox" / "include"), "-I", str(ROOT / "libvox")]
     embed = str(ROOT / "tests" / "libvox" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
     said = subprocess.run([program], check=True, capture_output=True, text=True).stdout
