@@ -18,6 +18,10 @@
 
 #include <stdint.h>
 
+/* The one place where the version of this library stands. Its second number rises with whatever changes the interface
+ * or a bit of the results, its third with all else. */
+#define CPPN_VERSION "0.1.0"
+
 /* Largest counts that a network accepts. */
 enum {
     CPPN_MAX_NODES = 65536, /* inputs, outputs or nodes */
@@ -107,6 +111,9 @@ int64_t cppn_evaluated_nodes(const cppn_network *network); /* 0 for NULL */
  * What is refused leaves the outputs as they were.
  */
 enum cppn_status cppn_evaluate(const cppn_network *network, int64_t n_points, const double *points, double *outputs);
+
+/* CPPN_VERSION of the library that is linked, which may not be the one of this header; never NULL. */
+const char *cppn_version(void);
 
 /* A sentence without a full stop; never NULL. */
 const char *cppn_status_message(enum cppn_status status);

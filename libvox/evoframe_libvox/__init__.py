@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from evoframe_libvox._vox import ffi, lib
 
-__all__ = ["COMPILER", "FIX_ALL", "KERNELS", "Material", "Model", "Result", "Settings", "Track"]
+__all__ = ["COMPILER", "FIX_ALL", "KERNELS", "VERSION", "Material", "Model", "Result", "Settings", "Track"]
 
 
 def _kernels() -> Iterator[tuple[str, int]]:
@@ -33,6 +33,10 @@ _NUMBERS: Final = dict(_kernels())
 KERNELS: Final = tuple(_NUMBERS)
 """Names of what can compute on this processor, the fastest last. ``scalar`` is the reference, one
 bond after the other. The others are one program for several instruction sets, with the same bits."""
+
+VERSION: Final[str] = ffi.string(lib.vox_version()).decode()
+"""Version of the library; its second number rises with whatever changes its interface or a bit of the
+results."""
 
 COMPILER: Final[str] = ffi.string(lib.vox_compiler()).decode()
 """Name and version of the compiler that made the library."""

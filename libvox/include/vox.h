@@ -17,6 +17,10 @@
 
 #include <stdint.h>
 
+/* The one place where the version of this library stands. Its second number rises with whatever changes the interface
+ * or a bit of the results, its third with all else. */
+#define VOX_VERSION "0.1.0"
+
 /* Largest sizes that a model accepts. */
 enum {
     VOX_MAX_CELLS = 16777216, /* nx * ny * nz */
@@ -188,6 +192,9 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
 
 /* Name of a kernel, from number 1 up, the fastest last: empty if this processor cannot use it, NULL after the last. */
 const char *vox_kernel_name(int32_t number);
+
+/* VOX_VERSION of the library that is linked, which may not be the one of this header; never NULL. */
+const char *vox_version(void);
 
 /* Name and version of the compiler that made this library; never NULL. */
 const char *vox_compiler(void);

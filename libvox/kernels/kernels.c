@@ -33,14 +33,3 @@ const char *vox_kernel_name(int32_t number)
     if (number < 1 || number > N_KERNELS) return NULL;
     return can_use(kernels[number - 1]) ? kernels[number - 1]->name : "";
 }
-
-const char *vox_compiler(void)
-{
-#if defined(__clang__)
-    return "clang " __clang_version__;
-#elif defined(__GNUC__)
-    return "gcc " __VERSION__;
-#else
-    return "an unknown compiler";
-#endif
-}

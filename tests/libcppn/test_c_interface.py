@@ -1,6 +1,7 @@
 """The C interface, where Python does not pass: missing arrays, sizes, statuses, and a program in C."""
 
 import math
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from symbols import ROOT, sources_of
 
+import evoframe_libcppn
 from evoframe_libcppn._cppn import ffi, lib
 
 NODE = (0, lib.CPPN_SIN, 0.0, 1.0)
@@ -124,6 +126,12 @@ def test_numbers_of_points_do_not_overflow(network: Any, n: int) -> None:
     outputs = ffi.new("double[1]", [7.0])
     assert lib.cppn_evaluate(network, n, ffi.new("double[1]"), outputs) == lib.CPPN_BAD_POINTS
     assert outputs[0] == 7.0
+
+
+def test_the_version_is_that_of_the_header() -> None:
+    header = (ROOT / "libcppn" / "include" / "cppn.h").read_text(encoding="utf-8")
+    [version] = re.findall(r'^#define CPPN_VERSION "(\d+\.\d+\.\d+)"$', header, re.MULTILINE)
+    assert version == evoframe_libcppn.VERSION
 
 
 def test_a_program_in_c_runs(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """The C interface, where Python does not pass: missing arrays, sizes, statuses, and a program in C."""
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -205,6 +206,12 @@ def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> N
         model, bodies, material, phase, samples, steps, tracks, diverged, ffi.new("int64_t *")
     )
     assert status == lib.VOX_BAD_BATCH
+
+
+def test_the_version_is_that_of_the_header() -> None:
+    header = (ROOT / "libvox" / "include" / "vox.h").read_text(encoding="utf-8")
+    [version] = re.findall(r'^#define VOX_VERSION "(\d+\.\d+\.\d+)"$', header, re.MULTILINE)
+    assert version == evoframe_libvox.VERSION
 
 
 def test_a_program_in_c_runs(tmp_path: Path) -> None:
