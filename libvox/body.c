@@ -169,7 +169,9 @@ static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, i
     bonds->lower_y = take_numbers(arena, n);
     bonds->lower_z = take_numbers(arena, n);
     bonds->upper = take_vecs(arena, n);
-    for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i] = alike ? NULL : take_numbers(arena, n);
+#define LAY_OUT(field) bonds->coupling.field = alike ? NULL : take_numbers(arena, n);
+    BOND_LAW(LAY_OUT)
+#undef LAY_OUT
     bonds->lower = take(arena, n, sizeof *bonds->lower);
     bonds->tile_used = take(arena, n_tiles, sizeof *bonds->tile_used);
 }
@@ -271,9 +273,10 @@ static void place_bond(struct body *body, int64_t lower, enum axis axis)
     body->bonded[upper] |= (uint8_t)(1u << 2 * axis);
     bonds->tile_used[lower / TILE] = 1;
     if (body->coupling) return;
-    double numbers[MOST_COEFFICIENTS];
-    memcpy(numbers, coupling_of(body, lower, upper), (size_t)N_COEFFICIENTS * sizeof *numbers);
-    for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i][lower] = numbers[i];
+    const struct coupling *coupling = coupling_of(body, lower, upper);
+#define KEEP(field) bonds->coupling.field[lower] = coupling->field;
+    BOND_LAW(KEEP)
+#undef KEEP
 }
 
 static void place_bonds(struct body *body, const uint8_t *material)
@@ -291,13 +294,20 @@ static void place_bonds(struct body *body, const uint8_t *material)
     } while (step_on(&cursor, &body->model->settings));
 }
 
+static bool same_law(const struct coupling *one, const struct coupling *other)
+{
+#define SAME(field) && one->field == other->field
+    return true BOND_LAW(SAME);
+#undef SAME
+}
+
 /* The coupling that all bonds of a model's bodies have, or NULL if they may differ. */
 static const struct coupling *only_coupling(const vox_model *model)
 {
     const struct coupling *first = &model->couplings[0];
     const int64_t n = (int64_t)model->n_substances * model->n_substances;
     for (int64_t i = 1; i < n; i++)
-        if (memcmp(first, &model->couplings[i], offsetof(struct coupling, fastest)) != 0) return NULL;
+        if (!same_law(first, &model->couplings[i])) return NULL;
     return first;
 }
 

@@ -51,25 +51,54 @@ struct substance {
     double static_friction, dynamic_friction;
 };
 
-/* Damping of one end of a bond (section 6). */
+/* The numbers of a bond's law (sections 5 and 6), each as FIELD(number): there are structs of numbers and of arrays, and
+ * loops over slots that want each array by its name. */
+#define STIFFNESSES(FIELD)            \
+    FIELD(stretch)    /* a1, N/m */   \
+    FIELD(twist)      /* a2, N m */   \
+    FIELD(shear)      /* b1, N/m */   \
+    FIELD(bend_shear) /* b2, N */     \
+    FIELD(bend)       /* b3, N m */
+#define DAMPINGS(FIELD, end)              \
+    FIELD(end stretch)      /* N s/m */   \
+    FIELD(end shear)        /* N s/m */   \
+    FIELD(end bend_shear)   /* N s */     \
+    FIELD(end moment_shear) /* N s */     \
+    FIELD(end bend)         /* N m s */   \
+    FIELD(end twist)        /* N m s */
+#define BOND_LAW(FIELD) STIFFNESSES(FIELD) DAMPINGS(FIELD, lower.) DAMPINGS(FIELD, upper.)
+
+#define NUMBER(field) double field;
+
+/* Damping of one end of a bond. */
 struct damper {
-    double stretch, shear, bend_shear;    /* N s/m, N s/m, N s */
-    double moment_shear, bend, twist;     /* N s, N m s, N m s */
+    DAMPINGS(NUMBER, )
 };
 
-/* A bond between two materials, the lower-indexed voxel's first (sections 5 and 6). */
+/* A bond between two materials, the lower-indexed voxel's first. */
 struct coupling {
-    double stretch;    /* a1, N/m */
-    double twist;      /* a2, N m */
-    double shear;      /* b1, N/m */
-    double bend_shear; /* b2, N */
-    double bend;       /* b3, N m */
+    STIFFNESSES(NUMBER)
     struct damper lower, upper;
-    /* so far what a bond's law needs */
+    /* so far the bond's law */
     double fastest;    /* larger of stretch / mass of the two ends, 1/s2 */
     double touch_drag; /* N s/m, of voxels that touch */
     double touch_friction;
 };
+
+#undef NUMBER
+#define ARRAY(field) double *field;
+
+/* The bond's law in each slot. */
+struct damper_arrays {
+    DAMPINGS(ARRAY, )
+};
+
+struct coupling_arrays {
+    STIFFNESSES(ARRAY)
+    struct damper_arrays lower, upper;
+};
+
+#undef ARRAY
 
 struct kernel;
 
@@ -197,11 +226,6 @@ struct voxels {
     int32_t *touching;        /* scratch: voxels that it touches in this step, if they are damped or rub */
 };
 
-/* The numbers with which struct coupling begins: all that a bond's law needs. */
-#define N_COEFFICIENTS ((int)(offsetof(struct coupling, fastest) / sizeof(double)))
-#define MOST_COEFFICIENTS 17
-_Static_assert(N_COEFFICIENTS == MOST_COEFFICIENTS, "a bond's law needs other numbers than those that are kept");
-
 /* The bonds along one axis. Arrays over slots: that of a bond's lower end, the bond pointing from it along +axis. */
 struct bonds {
     int64_t n;
@@ -212,7 +236,7 @@ struct bonds {
     struct vecs stretch; /* m, of the last step on which the frame did not change; likewise */
     double *lower_y, *lower_z; /* rad, turn of the lower end */
     struct vecs upper;  /* rad, turn of the upper end */
-    double *coefficients[MOST_COEFFICIENTS]; /* of each bond's coupling, if not all are the same */
+    struct coupling_arrays coupling; /* of each bond, if not all are the same */
     uint8_t *tile_used; /* 1 where a tile has a bond */
 };
 

@@ -203,13 +203,10 @@ IN_LOOP void put(lanes to[3], int64_t i, bool there, struct vec v)
 /* Stiffnesses and dampers of the bond in a slot. */
 IN_LOOP struct coupling coupling_in(const struct bonds *bonds, int64_t i)
 {
-    double *const *c = bonds->coefficients;
-    return (struct coupling){
-        c[0][i], c[1][i], c[2][i], c[3][i], c[4][i],
-        {c[5][i], c[6][i], c[7][i], c[8][i], c[9][i], c[10][i]},
-        {c[11][i], c[12][i], c[13][i], c[14][i], c[15][i], c[16][i]},
-        0.0, 0.0, 0.0,
-    };
+    const struct coupling_arrays *arrays = &bonds->coupling;
+#define LOAD(field) .field = arrays->field[i],
+    return (struct coupling){BOND_LAW(LOAD)};
+#undef LOAD
 }
 
 /* Stretch, and turns of both ends, or how fast they change. */
