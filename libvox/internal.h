@@ -362,6 +362,15 @@ static inline struct vec velocity_of(const struct voxels *v, int64_t slot)
     return vec_scale(v->mobility[slot], vec_at(v->momentum, slot));
 }
 
+/* ranges.c */
+
+/* The fault of the first number that is out of its range. */
+enum vox_status vox_settings_check(const struct vox_settings *settings);
+enum vox_status vox_properties_check(const struct vox_material *material);
+
+/* A sentence for what those return; NULL for any other status. */
+const char *vox_range_message(enum vox_status status);
+
 /* body.c */
 
 /* Checks the material codes of a body and counts what it is made of. */

@@ -1,23 +1,10 @@
-/* Settings and materials: their checks, and the constants that follow from them (sections 1, 5, 6 and 9). */
+/* Settings and materials: what their ranges leave to be checked, and the constants that follow from them (sections 1, 5,
+ * 6 and 9). */
 #include <stdlib.h>
 
 #include "internal.h"
 
-static const int64_t MOST_SUBSTEPS = 1000;
-static const double STEEPEST = 89.0; /* degrees */
-static const double LONGEST = 1e9;   /* s */
-static const double FARTHEST = 1e9;  /* edges */
 static const double RADIANS = 3.14159265358979323846 / 180.0;
-
-static bool not_negative(double x)
-{
-    return isfinite(x) && x >= 0.0;
-}
-
-static bool within(double low, double x, double high)
-{
-    return low <= x && x <= high; /* false for a NaN */
-}
 
 static bool canvas_fits(const struct vox_settings *s)
 {
@@ -26,62 +13,19 @@ static bool canvas_fits(const struct vox_settings *s)
            s->nz <= most / (s->nx * s->ny);
 }
 
-static enum vox_status check_time(const struct vox_settings *s)
-{
-    if (!(s->time_step_fraction > 0.0 && s->time_step_fraction <= 1.0)) return VOX_BAD_TIME_STEP_FRACTION;
-    if (s->substeps < 1 || s->substeps > MOST_SUBSTEPS) return VOX_BAD_SUBSTEPS;
-    if (s->step_limit < 1) return VOX_BAD_STEP_LIMIT;
-    if (!(s->duration > 0.0 && s->duration <= LONGEST)) return VOX_BAD_DURATION;
-    if (!isfinite(s->temperature_amplitude)) return VOX_BAD_TEMPERATURE_AMPLITUDE;
-    if (!within(1.0 / LONGEST, s->period, LONGEST)) return VOX_BAD_PERIOD;
-    if (!within(0.0, s->start_time, LONGEST)) return VOX_BAD_START_TIME;
-    if (!within(0.0, s->ramp, LONGEST)) return VOX_BAD_RAMP;
-    return VOX_OK;
-}
-
-static enum vox_status check_surroundings(const struct vox_settings *s)
-{
-    if (!isfinite(s->gravity)) return VOX_BAD_GRAVITY;
-    if (!within(-STEEPEST, s->floor_slope, STEEPEST)) return VOX_BAD_FLOOR_SLOPE;
-    if (!not_negative(s->fluid_drag)) return VOX_BAD_FLUID_DRAG;
-    if (!not_negative(s->bond_damping)) return VOX_BAD_BOND_DAMPING;
-    if (!not_negative(s->slow_damping)) return VOX_BAD_SLOW_DAMPING;
-    if (!not_negative(s->floor_damping)) return VOX_BAD_FLOOR_DAMPING;
-    if (!not_negative(s->contact_damping)) return VOX_BAD_CONTACT_DAMPING;
-    return VOX_OK;
-}
-
-static enum vox_status check_contacts(const struct vox_settings *s)
-{
-    if (!within(1.0, s->collision_envelope, 2.0)) return VOX_BAD_COLLISION_ENVELOPE;
-    if (!within(1.0, s->collision_horizon, 4.0)) return VOX_BAD_COLLISION_HORIZON;
-    if (!within(1.0, s->collision_list_factor, 2.0)) return VOX_BAD_COLLISION_LIST_FACTOR;
-    return VOX_OK;
-}
-
 static enum vox_status check_settings(const struct vox_settings *s)
 {
     if (!canvas_fits(s)) return VOX_BAD_CANVAS;
-    if (!within(1e-6, s->voxel_size, 1e6)) return VOX_BAD_VOXEL_SIZE;
-    enum vox_status status = check_time(s);
-    if (status == VOX_OK) status = check_surroundings(s);
-    if (status == VOX_OK) status = check_contacts(s);
+    const enum vox_status status = vox_settings_check(s);
     if (status != VOX_OK) return status;
-    if (!vox_kernel_of(s->kernel)) return VOX_BAD_KERNEL;
-    if (!(s->largest_strain > 0.0 && s->largest_strain <= FARTHEST)) return VOX_BAD_LARGEST_STRAIN;
-    if (!(s->largest_distance > 0.0 && s->largest_distance <= FARTHEST)) return VOX_BAD_LARGEST_DISTANCE;
-    return VOX_OK;
+    return vox_kernel_of(s->kernel) ? VOX_OK : VOX_BAD_KERNEL;
 }
 
 static enum vox_status check_material(const struct vox_material *m, const struct vox_settings *s)
 {
-    if (!within(1e-6, m->youngs_modulus, 1e18)) return VOX_BAD_YOUNGS_MODULUS;
-    if (!(m->poisson_ratio >= 0.0 && m->poisson_ratio < 0.5)) return VOX_BAD_POISSON_RATIO;
-    if (!within(1e-6, m->density, 1e18)) return VOX_BAD_DENSITY;
-    if (!isfinite(m->expansion) || !isfinite(m->expansion * s->temperature_amplitude)) return VOX_BAD_EXPANSION;
-    if (!not_negative(m->static_friction)) return VOX_BAD_STATIC_FRICTION;
-    if (!not_negative(m->dynamic_friction)) return VOX_BAD_DYNAMIC_FRICTION;
-    return VOX_OK;
+    const enum vox_status status = vox_properties_check(m);
+    if (status != VOX_OK) return status;
+    return isfinite(m->expansion * s->temperature_amplitude) ? VOX_OK : VOX_BAD_EXPANSION;
 }
 
 static struct substance substance_of(const struct vox_material *m, const struct vox_settings *s)

@@ -96,7 +96,7 @@ struct vox_settings {
     double time_step_fraction;     /* of the largest stable time step; 0 < . <= 1 */
     int64_t substeps;              /* each such step is made in so many; 1 .. 1000 */
     double duration;               /* simulated time, s; 0 < . <= 1e9 */
-    int64_t step_limit;            /* a body that needs more steps is refused; > 0 */
+    int64_t step_limit;            /* a body that needs more steps is refused; >= 1 */
     /* actuation: expansion * temperature_amplitude * sin(2 pi (t / period + phase)) is the strain of a voxel */
     double temperature_amplitude;  /* degrees, the base temperature already subtracted */
     double period;                 /* s; 1e-9 .. 1e9 */
@@ -107,11 +107,11 @@ struct vox_settings {
     int32_t floor;                 /* 0: there is none; else the plane z = x tan(floor_slope) */
     double floor_slope;            /* angular degrees; -89 .. 89; tilts the plane, but not the direction of its push */
     double fluid_drag;             /* kg/m3, half the fluid's density times the drag coefficient; >= 0 */
-    /* damping, each as a fraction of critical; >= 0 */
-    double bond_damping;
-    double slow_damping;           /* against the ground, of all motion */
-    double floor_damping;
-    double contact_damping;        /* of voxels that touch, as far as a step can bear it */
+    /* damping, each as a fraction of critical */
+    double bond_damping;           /* >= 0 */
+    double slow_damping;           /* against the ground, of all motion; >= 0 */
+    double floor_damping;          /* >= 0 */
+    double contact_damping;        /* of voxels that touch, as far as a step can bear it; >= 0 */
     /* contact between voxels */
     int32_t self_collision;        /* 0: bodies pass through themselves */
     int32_t contact_friction;      /* 0: without; else with the mean of both dynamic frictions */
@@ -189,6 +189,21 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples, const int64_t *sample_steps,
                              const struct vox_tracks *tracks, int64_t *diverged_step, int64_t *culprit);
+
+/* What a setting, or a property of a material, may be. */
+struct vox_range {
+    const char *name;       /* the field of struct vox_settings or struct vox_material */
+    enum vox_status status; /* of any other number */
+    int32_t whole;          /* 0: the field is a double; else an int64_t */
+    double lower, upper;    /* in the unit of the field; infinite if any finite number that way will do */
+    int32_t lower_included, upper_included; /* 0: the number must not be the bound itself */
+    const char *words;      /* what stands after "must be " in the message of the status */
+};
+
+/* Ranges of the settings but for canvas, switches and kernel, and of the properties of a material, from number 0 up;
+ * NULL after the last. An expansion must also be finite when multiplied by the temperature's amplitude. */
+const struct vox_range *vox_setting_range(int32_t number);
+const struct vox_range *vox_property_range(int32_t number);
 
 /* Name of a kernel, from number 1 up, the fastest last: empty if this processor cannot use it, NULL after the last. */
 const char *vox_kernel_name(int32_t number);

@@ -106,6 +106,36 @@ def test_every_setting_and_property_has_a_status_of_its_name() -> None:
             assert created(statuses[f"VOX_BAD_{name.upper()}"], **{name: bad}) == culprit
 
 
+def in_header(words: str) -> str:
+    """Return a range as comments of the header write it."""
+    for pattern, notation in (
+        (r"between (\S+) and (\S+).*", r"\1 .. \2"),
+        (r"above (\S+) and at most (\S+).*", r"\1 < . <= \2"),
+        (r"at least (\S+) and below (\S+)", r"\1 <= . < \2"),
+        (r"at least (\S+)", r">= \1"),
+        (r"finite and not negative", ">= 0"),
+        (r"finite", ""),
+    ):
+        if re.fullmatch(pattern, words):
+            return re.sub(pattern, notation, words)
+    raise AssertionError(words)
+
+
+def test_the_header_states_the_ranges() -> None:
+    """A person reads them there, while the program has its table."""
+    header = (ROOT / "libvox" / "include" / "vox.h").read_text(encoding="utf-8")
+    ranges = {**evoframe_libvox.SETTING_RANGES, **evoframe_libvox.PROPERTY_RANGES}
+    for name, span in ranges.items():
+        [comment] = re.findall(rf"(?:double|int64_t) {name}; +/\*(.*?)\*/", header, re.DOTALL)
+        assert in_header(span.words) in comment
+
+
+def test_there_is_no_range_beyond_the_last() -> None:
+    for nth, count in ((lib.vox_setting_range, 21), (lib.vox_property_range, 6)):
+        assert nth(count - 1) != ffi.NULL
+        assert nth(count) == nth(-1) == nth(-(2**31)) == nth(2**31 - 1) == ffi.NULL
+
+
 def test_the_first_bad_cell_of_the_fixed_ones_is_named() -> None:
     assert created(lib.VOX_OK, fixed=[0, 63]) == -1
     assert created(lib.VOX_BAD_FIXED, fixed=[0, 64]) == 1
