@@ -39,11 +39,6 @@ static bool has_bond(const vox_model *model, const uint8_t *material, const stru
     return !(model->fixed[cursor->cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL);
 }
 
-static int32_t substance_at(const vox_model *model, uint8_t code)
-{
-    return model->of_code[code];
-}
-
 /* Section 3. A body without bonds has another step, as the engine does: the square root of the edge is missing. */
 static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond,
                                  double fastest_voxel)
@@ -79,13 +74,13 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
-        const int32_t own = substance_at(model, material[cursor.cell]);
+        const int32_t own = model->of_code[material[cursor.cell]];
         census->n_voxels++;
         widen(census, &cursor);
         fastest_voxel = fmax(fastest_voxel, model->substances[own].youngs_modulus / model->substances[own].mass);
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
             if (!has_bond(model, material, &cursor, axis)) continue;
-            const int32_t other = substance_at(model, material[cursor.cell + stride[axis]]);
+            const int32_t other = model->of_code[material[cursor.cell + stride[axis]]];
             census->n_bonds++;
             fastest_bond = fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
         }
@@ -257,7 +252,7 @@ static void place_voxels(struct body *body, const uint8_t *material)
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
-        place_voxel(body, &cursor, substance_at(body->model, material[cursor.cell]));
+        place_voxel(body, &cursor, body->model->of_code[material[cursor.cell]]);
         body->cells[n] = (int32_t)cursor.cell;
         body->slots[n++] = (int32_t)slot_of(body, &cursor);
     } while (step_on(&cursor, &body->model->settings));

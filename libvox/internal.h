@@ -350,6 +350,13 @@ static inline const struct coupling *coupling_of(const struct body *body, int64_
     return &body->model->couplings[v->substance[lower] * body->model->n_substances + v->substance[upper]];
 }
 
+/* Force on a voxel with slow damping and weight. */
+IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentum, double weight)
+{
+    return (struct vec){force.x - drag_rate * momentum.x, force.y - drag_rate * momentum.y,
+                        (force.z - drag_rate * momentum.z) + weight};
+}
+
 /* Slot of the cell beside a slot (upwards or not), or -1 beyond the box. */
 static inline int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards)
 {

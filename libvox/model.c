@@ -118,17 +118,12 @@ static double largest_size(const vox_model *model)
     return model->settings.voxel_size * fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
 }
 
-/* Of the canvas, in cells. */
-static double longest_edge(const struct vox_settings *s)
-{
-    return fmax((double)s->nx, fmax((double)s->ny, (double)s->nz));
-}
-
 static void derive_constants(vox_model *model, const struct vox_material *palette)
 {
     const struct vox_settings *s = &model->settings;
     model->rest_scale = (double)(float)s->voxel_size / s->voxel_size;
-    model->too_far = s->largest_distance * s->voxel_size * longest_edge(s);
+    const double longest = fmax((double)s->nx, fmax((double)s->ny, (double)s->nz)); /* edge of the canvas, cells */
+    model->too_far = s->largest_distance * s->voxel_size * longest;
     model->floor_rise = tan(RADIANS * s->floor_slope);
     for (int32_t code = 0; code < VOX_MAX_CODES; code++)
         if (model->of_code[code] >= 0) model->substances[model->of_code[code]] = substance_of(&palette[code], s);

@@ -9,17 +9,12 @@
 
 static const double CROWDING = 2.0; /* how much denser than the lattice voxels may lie while all contacts are listed */
 
-static int64_t least(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
-
 /* ---- distances -------------------------------------------------------------------------------------------- */
 
-/* How far the fastest voxel may move before the list is made anew, m. */
+/* How far the fastest voxel may move before the list is made anew, in lattice edges. */
 static double leeway(const struct vox_settings *s)
 {
-    return (s->collision_horizon - 1.0) / 2.0 * s->voxel_size;
+    return (s->collision_horizon - 1.0) / 2.0;
 }
 
 /* The original engine lists nothing beyond, m. */
@@ -32,7 +27,7 @@ static double engine_reach(const struct vox_settings *s)
 double vox_contacts_reach(const vox_model *model)
 {
     const struct vox_settings *s = &model->settings;
-    if (s->complete_contacts) return s->collision_envelope * model->largest_size + 2.0 * leeway(s);
+    if (s->complete_contacts) return s->collision_envelope * model->largest_size + 2.0 * (leeway(s) * s->voxel_size);
     return fmin(engine_reach(s), s->collision_horizon * model->largest_size);
 }
 
@@ -60,7 +55,8 @@ static enum vox_status make_room(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
     const int64_t n = contacts->n_skin;
-    contacts->most = least(n * (n - 1) / 2, pairs_per_voxel(body->model) * n);
+    const int64_t all = n * (n - 1) / 2, most = pairs_per_voxel(body->model) * n;
+    contacts->most = all < most ? all : most;
     if (!vox_pairs_reserve(&contacts->now, contacts->most)) return VOX_NO_MEMORY;
     if (!vox_pairs_reserve(&contacts->first, contacts->near_by.pairs.n)) return VOX_NO_MEMORY;
     return vox_grid_shape(&contacts->grid, n);
@@ -195,7 +191,7 @@ bool vox_contacts_refresh(struct body *body, bool first_step)
     const struct vox_settings *settings = &body->model->settings;
     struct contacts *contacts = &body->contacts;
     contacts->travelled += body->top_speed * body->census.dt / settings->voxel_size;
-    if (!first_step && contacts->travelled <= (settings->collision_horizon - 1.0) / 2.0) return true;
+    if (!first_step && contacts->travelled <= leeway(settings)) return true;
     contacts->travelled = 0.0;
     return first_step ? list_at_rest(body) : list_contacts(body);
 }

@@ -1,26 +1,6 @@
 /* The bond law: a beam between two voxels, in one of two frames, with a damper (sections 5 and 6). */
+#include "axes.h"
 #include "internal.h"
-
-/* A vector seen in axes of which the bond's own is the first, and back. */
-static struct vec axis_to_x(enum axis axis, struct vec v)
-{
-    switch (axis) {
-    case AXIS_X: return v;
-    case AXIS_Y: return (struct vec){v.y, -v.x, v.z};
-    case AXIS_Z: break;
-    }
-    return (struct vec){v.z, v.y, -v.x};
-}
-
-static struct vec x_to_axis(enum axis axis, struct vec v)
-{
-    switch (axis) {
-    case AXIS_X: return v;
-    case AXIS_Y: return (struct vec){-v.y, v.x, v.z};
-    case AXIS_Z: break;
-    }
-    return (struct vec){-v.z, v.y, v.x};
-}
 
 /* Rotation vector of a rotation. The engine's formulas: within 5.6 degrees the chord counts as the arc. */
 static struct vec rotation_vector(struct quat q)

@@ -70,10 +70,8 @@ static void hold(const struct voxels *v, int64_t i)
 void vox_voxel_load(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
-    const struct vec drag = vec_scale(-v->drag_rate[slot], vec_at(v->momentum, slot));
-    struct vec force = vec_add(drag, vec_at(v->force, slot));
-    force.z += v->weight[slot];
-    vec_put(v->force, slot, force);
+    const struct vec force = vec_at(v->force, slot), momentum = vec_at(v->momentum, slot);
+    vec_put(v->force, slot, loaded(force, v->drag_rate[slot], momentum, v->weight[slot]));
 }
 
 static double larger(double a, double b)

@@ -1,18 +1,6 @@
 /* The bond law (sections 5 and 6) of the fast kernel: see vector_kernel.h, which includes this. */
 
-/* ---- vectors that are seen along an axis ------------------------------------------------------------------ */
-
-IN_LOOP struct vec along(enum axis axis, struct vec v)
-{
-    if (axis == AXIS_X) return v;
-    return axis == AXIS_Y ? (struct vec){v.y, -v.x, v.z} : (struct vec){v.z, v.y, -v.x};
-}
-
-IN_LOOP struct vec across(enum axis axis, struct vec v)
-{
-    if (axis == AXIS_X) return v;
-    return axis == AXIS_Y ? (struct vec){-v.y, v.x, v.z} : (struct vec){-v.z, v.y, v.x};
-}
+/* ---- rotations ---------------------------------------------------------------------------------------------- */
 
 /* A rotation as a matrix: cheaper than its quaternion where it turns several vectors. */
 struct matrix {
@@ -104,9 +92,9 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         const struct quat upper = {qw[i + step], qx[i + step], qy[i + step], qz[i + step]};
         const struct vec apart = {px[i + step] - px[i], py[i + step] - py[i], pz[i + step] - pz[i]};
         const struct matrix frame = frame_at(frames, i);
-        const struct vec u = along(axis, turn_back(&frame, apart));
+        const struct vec u = axis_to_x(axis, turn_back(&frame, apart));
         const struct quat turned = quat_mul(quat_conj(lower), upper);
-        const struct vec turned_axis = along(axis, (struct vec){turned.x, turned.y, turned.z});
+        const struct vec turned_axis = axis_to_x(axis, (struct vec){turned.x, turned.y, turned.z});
         const double rest = 0.5 * (size[i] + size[i + step]), aside = fabs(u.y) + fabs(u.z);
         /* turn and extension against their limits without dividing; backwards, a turn is negative */
         const double was = was_small[i]; /* 1 or 0, so the limits are exact enough */
@@ -237,13 +225,13 @@ IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const
 /* The orientation of a frame that a bond straightens: lower * (w, 0, -y, -z), the latter seen along an axis. */
 IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, double y, double z)
 {
-    const struct vec v = along(axis, (struct vec){lower.x, lower.y, lower.z});
+    const struct vec v = axis_to_x(axis, (struct vec){lower.x, lower.y, lower.z});
     const struct vec turned = {
         w * v.x + (v.z * y - v.y * z),
         w * v.y + (v.x * z - lower.w * y),
         w * v.z - (v.x * y + lower.w * z),
     };
-    const struct vec back = across(axis, turned);
+    const struct vec back = x_to_axis(axis, turned);
     return (struct quat){lower.w * w + (v.y * y + v.z * z), back.x, back.y, back.z};
 }
 
@@ -313,15 +301,15 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const st
                     moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend, &speed, speed.b));
         const struct matrix m = large ? matrix_of(frame) : frame_at(frames, i);
         const bool there = is_there[i] != 0.0;
-        const struct vec force_lower = turn(&m, across(axis, vec_add(spring, brake)));
+        const struct vec force_lower = turn(&m, x_to_axis(axis, vec_add(spring, brake)));
         add(loads->force_lower, i, there, force_lower);
-        add(loads->moment_lower, i, there, turn(&m, across(axis, moment_lower)));
-        put(loads->moment_upper, i, there, turn(&m, across(axis, moment_upper)));
+        add(loads->moment_lower, i, there, turn(&m, x_to_axis(axis, moment_lower)));
+        put(loads->moment_upper, i, there, turn(&m, x_to_axis(axis, moment_upper)));
         if (coupling) {
             put(loads->force_upper, i, there, force_lower);
         } else {
             const struct vec own = force_of(upper_end->stretch, upper_end->shear, upper_end->bend_shear, &speed);
-            put(loads->force_upper, i, there, turn(&m, across(axis, vec_add(spring, own))));
+            put(loads->force_upper, i, there, turn(&m, x_to_axis(axis, vec_add(spring, own))));
         }
         overstrained += there & !(fabs(p.x) <= most);
     }

@@ -7,6 +7,7 @@
 #include <float.h>
 #include <string.h>
 
+#include "axes.h"
 #include "for_vectors.h"
 #include "internal.h"
 #include "lanes.h"

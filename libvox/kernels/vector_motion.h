@@ -1,14 +1,6 @@
 /* How voxels move and how their sizes follow the actuation (sections 4, 7 and 8) in the fast kernel: see vector_kernel.h,
  * which includes this. */
 
-
-/* Force on a voxel with slow damping and weight. */
-IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentum, double weight)
-{
-    return (struct vec){force.x - drag_rate * momentum.x, force.y - drag_rate * momentum.y,
-                        (force.z - drag_rate * momentum.z) + weight};
-}
-
 /* Squares of the largest speeds and ways from the start, in each lane. */
 struct extremes {
     lanes speed2, way2;
