@@ -19,6 +19,7 @@ IN_LOOP double clamp(double z, double limit)
     return below < -limit ? -limit : below;
 }
 
+/* clang-format off: a table of formulas. */
 IN_LOOP double sigmoid(double z) { return 1.0 / (1.0 + exp(-clamp(5.0 * z, 60.0))); }
 IN_LOOP double tanh_2_5(double z) { return tanh(clamp(2.5 * z, 60.0)); }
 IN_LOOP double sin_5(double z) { return sin(clamp(5.0 * z, 60.0)); }
@@ -42,6 +43,7 @@ IN_LOOP double neg_square(double z) { return -pow(z, TWO); }
 IN_LOOP double sqrt_abs(double z) { return sqrt(fabs(z)); }
 IN_LOOP double neg_sqrt_abs(double z) { return -sqrt(fabs(z)); }
 IN_LOOP double neg_sin(double z) { return -sin(z); }
+/* clang-format on */
 
 /* One loop for each formula, which the compiler vectorizes where no function of the C library is called. */
 IN_LOOP void map(formula *f, double bias, double response, int64_t n, double *sums)

@@ -7,8 +7,9 @@
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
-static const size_t LARGEST_SPARE = (size_t)1 << 26;       /* bytes; asking for more takes little of the time it is used */
-static const size_t LINE = 64;                             /* bytes of the processor's cache, at most */
+/* bytes; asking for more takes little of the time it is used */
+static const size_t LARGEST_SPARE = (size_t)1 << 26;
+static const size_t LINE = 64; /* bytes of the processor's cache, at most */
 
 /* ---- the cells -------------------------------------------------------------------------------------------- */
 
@@ -291,9 +292,10 @@ static void place_bonds(struct body *body, const uint8_t *material)
 
 static bool same_law(const struct coupling *one, const struct coupling *other)
 {
-#define SAME(field) && one->field == other->field
-    return true BOND_LAW(SAME);
-#undef SAME
+#define COMPARE(field) if (one->field != other->field) return false;
+    BOND_LAW(COMPARE)
+#undef COMPARE
+    return true;
 }
 
 /* The coupling that all bonds of a model's bodies have, or NULL if they may differ. */

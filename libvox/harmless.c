@@ -1,9 +1,10 @@
 /* What a step cannot do, however its forces turn out: a bound that needs no forces (docs/solver.md). */
 #include "internal.h"
 
-static const double MARGIN = 1.01;      /* for roundings, and for frames that are not quite unit quaternions */
+/* For roundings, and for frames that are not quite unit quaternions. */
+static const double MARGIN = 1.01;
 static const double FARTHEST_TURN = 6.3; /* rad, of the end of a bond, if no voxel is turned far */
-static const double LEAST_COSINE = 0.75; /* of half the angle by which a voxel is turned, for that */
+static const double LEAST_COSINE = 0.75; /* of half the angle of a voxel's turn, for that */
 static const double SHORTEST = 1e-150;   /* s; the square of a time step must not vanish */
 static const double WILDEST = 1e200;     /* J, of a spin: far from overflowing */
 

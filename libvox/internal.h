@@ -120,7 +120,8 @@ struct near_cell {
 struct vicinity {
     int64_t hops;
     int64_t n_places;
-    struct place *places;    /* within so many bonds, closer ones first: voxels that are joined so do not collide */
+    struct place *places;    /* within so many bonds, closer ones first: voxels joined so do not
+                                collide */
     int32_t *index;          /* of each point of the cube around them */
     int64_t n_cells;
     struct near_cell *cells; /* of voxels that may touch, each pair once */
@@ -138,7 +139,8 @@ struct vox_model {
     const struct kernel *kernel;
     struct spares *spares;
     int64_t cells;
-    double rest_scale;           /* size / lattice edge without actuation: the edge was rounded to single precision */
+    double rest_scale;           /* size / lattice edge without actuation: the edge was rounded to
+                                    single precision */
     double largest_size;         /* m, of any voxel at any time */
     double fastest;              /* 1/s2, the largest of its couplings */
     double too_far;              /* m, a voxel further from its start has diverged */
@@ -223,7 +225,7 @@ struct voxels {
     double *mobile;           /* 0 if all its degrees of freedom are held, else 1 */
     uint8_t *substance;       /* index */
     uint8_t *fixed;           /* degrees of freedom that it has not */
-    int32_t *touching;        /* scratch: voxels that it touches in this step, if they are damped or rub */
+    int32_t *touching;        /* scratch: voxels that it touches now, if they are damped or rub */
 };
 
 /* The bonds along one axis. Arrays over slots: that of a bond's lower end, the bond pointing from it along +axis. */
@@ -278,7 +280,8 @@ struct near_by {
     struct pairs pairs;
     uint64_t *joined;      /* [places][words] where one of the shortest ways to a place is bonds */
     uint64_t *bonds;       /* [6][words] */
-    uint64_t *skin, *held; /* [words] voxels that may touch others; voxels that are held in all degrees of freedom */
+    uint64_t *skin, *held; /* [words] voxels that may touch others; voxels that are held in all
+                              degrees of freedom */
     int64_t *begin;        /* [slots + 1] */
     struct search search;
 };
@@ -308,7 +311,8 @@ struct facet {
 /* The outer surface of a body: where voxels meet, their corners are one. */
 struct surface {
     int64_t n_corners, n_facets;
-    int32_t (*corners_of)[8]; /* [slots] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z; -1 within */
+    /* [slots] of the corner (x, y, z), each 0 or 1, at x + 2 y + 4 z; -1 within */
+    int32_t (*corners_of)[8];
     double *share;            /* [n_corners] 1 / number of voxels that meet there */
     struct vec *corners;      /* [n_corners] m */
     struct facet *facets;
@@ -323,7 +327,7 @@ struct body {
     int32_t *slots;     /* [n_voxels] of the voxels, ascending */
     int32_t *cells;     /* [n_voxels] of the canvas, likewise */
     uint8_t *occupied;  /* 1 where there is a voxel */
-    uint8_t *bonded;    /* bits of the sides on which there is a bond: -x, +x, -y, +y, -z, +z */
+    uint8_t *bonded;    /* bits of the sides with a bond: -x, +x, -y, +y, -z, +z */
     struct voxels voxels;
     struct bonds bonds[3]; /* along each axis */
     const struct coupling *coupling; /* of all bonds, or NULL if they differ */
@@ -346,8 +350,9 @@ static inline const struct substance *substance_of_voxel(const struct body *body
 
 static inline const struct coupling *coupling_of(const struct body *body, int64_t lower, int64_t upper)
 {
-    const struct voxels *v = &body->voxels;
-    return &body->model->couplings[v->substance[lower] * body->model->n_substances + v->substance[upper]];
+    const vox_model *model = body->model;
+    const uint8_t *substance = body->voxels.substance;
+    return &model->couplings[substance[lower] * model->n_substances + substance[upper]];
 }
 
 /* Force on a voxel with slow damping and weight. */

@@ -122,7 +122,7 @@ static void derive_constants(vox_model *model, const struct vox_material *palett
 {
     const struct vox_settings *s = &model->settings;
     model->rest_scale = (double)(float)s->voxel_size / s->voxel_size;
-    const double longest = fmax((double)s->nx, fmax((double)s->ny, (double)s->nz)); /* edge of the canvas, cells */
+    const double longest = fmax((double)s->nx, fmax((double)s->ny, (double)s->nz)); /* cells */
     model->too_far = s->largest_distance * s->voxel_size * longest;
     model->floor_rise = tan(RADIANS * s->floor_slope);
     for (int32_t code = 0; code < VOX_MAX_CODES; code++)

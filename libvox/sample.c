@@ -25,7 +25,7 @@ static struct vec mean_position(const struct body *body, double from_x)
 
 static double largest_start_x(const struct body *body)
 {
-    return body->voxels.start.x[body->census.length[0] - 1]; /* the box ends where the last voxel is */
+    return body->voxels.start.x[body->census.length[0] - 1]; /* the box ends at the last voxel */
 }
 
 static void write_voxels(const struct body *body, double *out)

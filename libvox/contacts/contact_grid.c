@@ -5,7 +5,7 @@
 #include "internal.h"
 
 static const double ROUNDING = 1e-12;
-static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body that is spread widely gets wider cubes */
+static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body spread widely gets wider cubes */
 
 enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin)
 {
@@ -116,7 +116,7 @@ static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last
     for (int32_t k = grid->begin[cube]; k < grid->begin[last + 1]; k++) {
         const int32_t other = grid->voxels[k];
         const struct vec apart = vec_sub(grid->packed[k], position);
-        grid->found[n] = other; /* overwritten by the next unless it counts: nobody can foresee which do */
+        grid->found[n] = other; /* overwritten by the next unless it counts: without a jump */
         n += (other > first) & (vec_dot(apart, apart) < reach2);
     }
     return n;

@@ -7,7 +7,8 @@
 
 #include "internal.h"
 
-static const double CROWDING = 2.0; /* how much denser than the lattice voxels may lie while all contacts are listed */
+/* How much denser than the lattice voxels may lie while all contacts are listed. */
+static const double CROWDING = 2.0;
 
 /* ---- distances -------------------------------------------------------------------------------------------- */
 

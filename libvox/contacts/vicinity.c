@@ -75,7 +75,8 @@ static void append_cells(struct vicinity *vicinity, double radius)
 enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, double radius)
 {
     const size_t width = 2 * (size_t)hops + 1, most = (size_t)radius;
-    const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3; /* of an octahedron */
+    /* of an octahedron */
+    const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3;
     const size_t n_cells = (most + 1) * (2 * most + 1) * (2 * most + 1);
     vicinity->hops = hops;
     vicinity->index = malloc(width * width * width * sizeof *vicinity->index);

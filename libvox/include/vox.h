@@ -105,7 +105,7 @@ struct vox_settings {
     /* surroundings */
     double gravity;                /* acceleration along z, m/s2; negative is down */
     int32_t floor;                 /* 0: there is none; else the plane z = x tan(floor_slope) */
-    double floor_slope;            /* angular degrees; -89 .. 89; tilts the plane, but not the direction of its push */
+    double floor_slope;            /* angular degrees; -89 .. 89; tilts the plane, but not its push */
     double fluid_drag;             /* kg/m3, half the fluid's density times the drag coefficient; >= 0 */
     /* damping, each as a fraction of critical */
     double bond_damping;           /* >= 0 */
@@ -115,19 +115,23 @@ struct vox_settings {
     /* contact between voxels */
     int32_t self_collision;        /* 0: bodies pass through themselves */
     int32_t contact_friction;      /* 0: without; else with the mean of both dynamic frictions */
-    int32_t complete_contacts;     /* 0: the original engine's list of possible contacts, which may come late; else
-                                      one that misses nothing */
+    int32_t complete_contacts;     /* 0: the original engine's list of possible contacts, which may
+                                      come late; else one that misses nothing */
     double collision_envelope;     /* voxels touch at this many of their mean sizes; 1 .. 2 */
-    double collision_horizon;      /* reach of the list of possible contacts, in voxel sizes; 1 .. 4. It is made anew
-                                      when the fastest voxel may have moved by (horizon - 1) / 2 lattice edges */
-    double collision_list_factor;  /* the list leaves out voxels within floor(factor * horizon) bonds of each other,
-                                      and the original engine's what is beyond factor * horizon edges; 1 .. 2 */
+    double collision_horizon;      /* reach of the list of possible contacts, in voxel sizes; 1 .. 4.
+                                      It is made anew when the fastest voxel may have moved by
+                                      (horizon - 1) / 2 lattice edges */
+    double collision_list_factor;  /* the list leaves out voxels within floor(factor * horizon) bonds
+                                      of each other, and the original engine's what is beyond
+                                      factor * horizon edges; 1 .. 2 */
     /* what computes; all kernels but the scalar one give the same bits, that one the same but for roundings */
-    int32_t kernel;                /* 0: the fastest that this processor can use; else a number of vox_kernel_name */
+    int32_t kernel;                /* 0: the fastest that this processor can use; else a number of
+                                      vox_kernel_name */
     int32_t whole_body;            /* 0: leaves out what no sample can tell, which changes no bit */
     /* what counts as diverged */
     double largest_strain;         /* of a bond, either way; 0 < . <= 1e9 */
-    double largest_distance;       /* of a voxel from its start, in longest edges of the canvas; 0 < . <= 1e9 */
+    double largest_distance;       /* of a voxel from its start, in longest edges of the canvas;
+                                      0 < . <= 1e9 */
 };
 
 /* One entry of a palette. The index in the palette is the material code; code 0 is an empty cell. */
@@ -144,13 +148,15 @@ struct vox_material {
 /* Where to write the tracks of a batch; NULL for a track that is not wanted. NaN from the sample at which a body
  * diverged. With S = n_samples: */
 struct vox_tracks {
-    double *tip;      /* [n_bodies][S][3]        m, the last occupied voxel in cell order */
-    double *face;     /* [n_bodies][S][3]        m, mass-weighted mean of the voxels with the largest initial x */
-    double *body;     /* [n_bodies][S][3]        m, mass-weighted mean of all voxels */
+    double *tip;      /* [n_bodies][S][3] m, the last occupied voxel in cell order */
+    double *face;     /* [n_bodies][S][3] m, mass-weighted mean of the voxels with the largest
+                         initial x */
+    double *body;     /* [n_bodies][S][3] m, mass-weighted mean of all voxels */
     double *voxels;   /* [n_bodies][S][cells][3] m, every voxel, NaN in empty cells */
-    double *energy;   /* [n_bodies][S][2]        J, strain energy of the bonds, and kinetic energy */
-    double *strain;   /* [n_bodies][S][2]        least and greatest strain of the bonds (of lattice edges), 0 without */
-    double *momentum; /* [n_bodies][S][6]        kg m/s, and kg m2/s about the origin */
+    double *energy;   /* [n_bodies][S][2] J, strain energy of the bonds, and kinetic energy */
+    double *strain;   /* [n_bodies][S][2] least and greatest strain of the bonds (of lattice
+                         edges), 0 without */
+    double *momentum; /* [n_bodies][S][6] kg m/s, and kg m2/s about the origin */
 };
 
 typedef struct vox_model vox_model;
@@ -174,13 +180,14 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
 /* Simulate a batch to the end of the duration.
  *
  * material      [n_bodies][cells] material codes
- * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, at most 1e6 either way; of no matter
- *               where the material does not expand
- * sample_steps  [n_bodies][n_samples] strictly ascending for each body; 0 is the initial state, k the state after k
- *               steps; at most the number of its steps
- * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a NaN, or a distance beyond the
- *               settings that the step led to; a strain beyond the settings, or twice as many possible contacts as
- *               a lattice without gaps has, that the step began with. Such a body stops; the others do not notice.
+ * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, at most 1e6 either
+ *               way; of no matter where the material does not expand
+ * sample_steps  [n_bodies][n_samples] strictly ascending for each body; 0 is the initial state, k
+ *               the state after k steps; at most the number of its steps
+ * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a NaN, or a distance
+ *               beyond the settings that the step led to; a strain beyond the settings, or twice as
+ *               many possible contacts as a lattice without gaps has, that the step began with.
+ *               Such a body stops; the others do not notice.
  *
  * What is refused leaves all buffers as they were, except that memory may run out in the middle of a batch.
  *
@@ -195,7 +202,7 @@ struct vox_range {
     const char *name;       /* the field of struct vox_settings or struct vox_material */
     enum vox_status status; /* of any other number */
     int32_t whole;          /* 0: the field is a double; else an int64_t */
-    double lower, upper;    /* in the unit of the field; infinite if any finite number that way will do */
+    double lower, upper;    /* in the unit of the field; infinite if there is no bound */
     int32_t lower_included, upper_included; /* 0: the number must not be the bound itself */
     const char *words;      /* what stands after "must be " in the message of the status */
 };

@@ -167,7 +167,8 @@ IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, 
     const struct deformation *now = &pose.deformation;
 
     struct wrench wrench = spring(coupling, *now);
-    if (pose.small == small) { /* a change of frame leaves the history, from which the next rates come */
+    /* a change of frame leaves the history, from which the next rates come */
+    if (pose.small == small) {
         add_damping(&wrench, coupling, rate_of(*now, last_of(bonds, lower), per_second));
         keep(bonds, lower, *now);
     }

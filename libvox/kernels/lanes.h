@@ -31,7 +31,8 @@ IN_LOOP double arcsine_ratio(double y)
 /* acos(w) for w from -1 to 1, by the nearer of asin's two ends. */
 IN_LOOP double arccosine(double w)
 {
-    const double half_pi = 1.5707963267948966, beyond = 6.123233995736766e-17; /* their sum is pi / 2 */
+    /* their sum is pi / 2 */
+    const double half_pi = 1.5707963267948966, beyond = 6.123233995736766e-17;
     const double size = fabs(w), chord2 = 0.5 - 0.5 * size;
     const bool near_end = size >= 0.5;
     const double y = choose(near_end, chord2, w * w);
@@ -43,13 +44,15 @@ IN_LOOP double arccosine(double w)
 /* sin(x): within 2 units in the last place up to 1e6 or so; beyond, x itself is no more exact. */
 IN_LOOP double sine(double x)
 {
-    const double whole = 6755399441055744.0; /* 1.5 * 2^52: what is added to it is rounded to a whole number */
-    /* pi in three parts, of which the first two have 33 bits each: their products with n are exact */
+    /* 1.5 * 2^52: what is added to it is rounded to a whole number */
+    const double whole = 6755399441055744.0;
+    /* pi in three parts, of which two have 33 bits each: their products with n are exact */
     const double first = 3.1415926534682512, second = 1.2154201012607932e-10, third = 4.044532497591901e-21;
     const double n = (x * 0.3183098861837907 + whole) - whole, half = 0.5 * n;
     const bool odd = (half + whole) - whole != half;
     const double near = ((x - n * first) - n * second) - n * third;
-    const double r = choose(fabs(near) <= 1.6, near, 0.0), y = r * r; /* other if x is beyond all sense */
+    /* other if x is beyond all sense */
+    const double r = choose(fabs(near) <= 1.6, near, 0.0), y = r * r;
     const double high = 1.0 / 6227020800.0 + y * (-1.0 / 1307674368000.0 + y * (1.0 / 355687428096000.0 +
                         y * (-1.0 / 121645100408832000.0 + y * (1.0 / 51090942171709440000.0))));
     const double low = -1.0 / 6.0 + y * (1.0 / 120.0 + y * (-1.0 / 5040.0 + y * (1.0 / 362880.0 +

@@ -1,7 +1,8 @@
 /* How a voxel moves and how its size follows the actuation (sections 4, 7 and 8). */
 #include "internal.h"
 
-static const double SETTLING = 0.5; /* share of the time until the start in which a size takes to the rounded edge */
+/* Share of the time until the start in which a size takes to the rounded edge. */
+static const double SETTLING = 0.5;
 
 struct actuation vox_actuation_at(const vox_model *model, double time)
 {

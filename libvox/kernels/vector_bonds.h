@@ -39,7 +39,8 @@ IN_LOOP struct vec turn_back(const struct matrix *m, struct vec v)
 struct sight {
     lanes stretch[3];  /* m; before the frame is known, the upper end seen from the lower */
     lanes relative[4]; /* quaternion, of the upper end against the frame */
-    lanes onto[3];     /* w, y, z of the rotation that takes the bond onto x; only where a bond is in the large frame */
+    lanes onto[3];     /* w, y, z of the rotation that takes the bond onto x; only where a bond is in
+                          the large frame */
     lanes rest;        /* m */
     lanes small;       /* 1 or 0, the frame of this step */
 } IN_LINES;
@@ -329,7 +330,8 @@ IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
 /* Gives what bonds do to their lower or upper ends to the voxels there; a force acts on both, in opposite directions. */
 IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3], const lanes moment[3], bool upper)
 {
-    double *const forces[] = {v->force.x, v->force.y, v->force.z}, *const torques[] = {v->torque.x, v->torque.y, v->torque.z};
+    double *const forces[] = {v->force.x, v->force.y, v->force.z};
+    double *const torques[] = {v->torque.x, v->torque.y, v->torque.z};
     for (int i = 0; i < 3; i++) {
         if (upper)
             subtract_lanes(forces[i] + base, force[i]);

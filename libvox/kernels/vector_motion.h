@@ -60,7 +60,8 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
     double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
     double *restrict sx = v->spin.x + base, *restrict sy = v->spin.y + base, *restrict sz = v->spin.z + base;
     double *restrict tx = v->torque.x + base, *restrict ty = v->torque.y + base, *restrict tz = v->torque.z + base;
-    const double *restrict kept = v->spin_kept + base, *restrict turnability = v->turnability + base;
+    const double *restrict kept = v->spin_kept + base;
+    const double *restrict turnability = v->turnability + base;
     const double *restrict mobile = v->mobile + base;
     int64_t lost = 0;
     NO_LANE_DEPENDS_ON_ANOTHER
@@ -94,7 +95,8 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
 {
     const double edge = actuation->edge, rest = actuation->rest, gain = actuation->gain;
     const double *restrict amplitude = v->amplitude + base;
-    const double *restrict phase_sine = v->phase_sine + base, *restrict phase_cosine = v->phase_cosine + base;
+    const double *restrict phase_sine = v->phase_sine + base;
+    const double *restrict phase_cosine = v->phase_cosine + base;
     double *restrict size = v->size + base;
     if (gain == 0.0) {
         for (int64_t i = 0; i < TILE; i++) size[i] = edge * rest;
