@@ -11,7 +11,7 @@ static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps sti
 static const size_t LARGEST_SPARE = (size_t)1 << 26;
 static const size_t LINE = 64; /* bytes of the processor's cache, at most */
 
-/* ---- the cells -------------------------------------------------------------------------------------------- */
+/* ---- the cells ------------------------------------------------------------------------------- */
 
 /* A cell of the canvas on the way through it, x fastest. */
 struct cursor {
@@ -28,9 +28,10 @@ static bool step_on(struct cursor *cursor, const struct vox_settings *s)
     return ++cursor->at[2] < s->nz;
 }
 
-/* Whether a bond leads from a cell with a voxel along +axis: neighbours that are both held in all degrees of freedom
- * have none. */
-static bool has_bond(const vox_model *model, const uint8_t *material, const struct cursor *cursor, enum axis axis)
+/* Whether a bond leads from a cell with a voxel along +axis: neighbours that are both held in all
+ * degrees of freedom have none. */
+static bool has_bond(const vox_model *model, const uint8_t *material, const struct cursor *cursor,
+                     enum axis axis)
 {
     const struct vox_settings *s = &model->settings;
     const int64_t stride[] = {1, s->nx, s->nx * s->ny}, length[] = {s->nx, s->ny, s->nz};
@@ -40,7 +41,8 @@ static bool has_bond(const vox_model *model, const uint8_t *material, const stru
     return !(model->fixed[cursor->cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL);
 }
 
-/* Section 3. A body without bonds has another step, as the engine does: the square root of the edge is missing. */
+/* Section 3. A body without bonds has another step, as the engine does: the square root of the edge
+ * is missing. */
 static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond,
                                  double fastest_voxel)
 {
@@ -65,7 +67,8 @@ static void widen(struct census *census, const struct cursor *cursor)
     }
 }
 
-enum vox_status vox_body_census(const vox_model *model, const uint8_t *material, struct census *census)
+enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
+                                struct census *census)
 {
     double fastest_bond = 0.0, fastest_voxel = 0.0;
     *census = (struct census){0};
@@ -78,12 +81,14 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
         const int32_t own = model->of_code[material[cursor.cell]];
         census->n_voxels++;
         widen(census, &cursor);
-        fastest_voxel = fmax(fastest_voxel, model->substances[own].youngs_modulus / model->substances[own].mass);
+        fastest_voxel = fmax(fastest_voxel,
+                             model->substances[own].youngs_modulus / model->substances[own].mass);
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
             if (!has_bond(model, material, &cursor, axis)) continue;
             const int32_t other = model->of_code[material[cursor.cell + stride[axis]]];
             census->n_bonds++;
-            fastest_bond = fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
+            fastest_bond =
+                fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
         }
     } while (step_on(&cursor, &model->settings));
     if (census->n_voxels == 0) return VOX_EMPTY_BODY;
@@ -91,7 +96,7 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
     return set_clock(census, model, fastest_bond, fastest_voxel);
 }
 
-/* ---- slots ------------------------------------------------------------------------------------------------ */
+/* ---- slots ----------------------------------------------------------------------------------- */
 
 /* Those after the box too: a tile's upper ends may lie there. */
 static int64_t slots_in_all(const struct body *body)
@@ -109,7 +114,7 @@ static int64_t slot_of(const struct body *body, const struct cursor *cursor)
            body->step[2] * (cursor->at[2] - from[2]);
 }
 
-/* ---- memory ----------------------------------------------------------------------------------------------- */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 /* Hands out parts of a piece of memory; without one, only counts what would be needed. */
 struct arena {
@@ -117,7 +122,8 @@ struct arena {
     size_t used;
 };
 
-/* An odd number of cache lines, so that arrays of one length do not meet in one set of the cache. */
+/* An odd number of cache lines, so that arrays of one length do not meet in one set of the
+ * cache. */
 static void *take(struct arena *arena, int64_t n, size_t size)
 {
     const size_t lines = ((size_t)n * size + LINE - 1) / LINE | 1;
@@ -149,15 +155,18 @@ static void lay_out_voxels(struct voxels *v, struct arena *arena, int64_t n)
     v->momentum = take_vecs(arena, n);
     v->spin = take_vecs(arena, n);
     v->start = take_vecs(arena, n);
-    double **const constants[] = {&v->phase, &v->phase_sine, &v->phase_cosine, &v->amplitude, &v->mobility, &v->drag_rate, &v->weight,
-                                  &v->turnability, &v->spin_kept, &v->mobile};
-    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++) *constants[i] = take_numbers(arena, n);
+    double **const constants[] = {&v->phase,     &v->phase_sine, &v->phase_cosine, &v->amplitude,
+                                  &v->mobility,  &v->drag_rate,  &v->weight,       &v->turnability,
+                                  &v->spin_kept, &v->mobile};
+    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++)
+        *constants[i] = take_numbers(arena, n);
     v->substance = take(arena, n, sizeof *v->substance);
     v->fixed = take(arena, n, sizeof *v->fixed);
     v->touching = take(arena, n, sizeof *v->touching);
 }
 
-static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, int64_t n_tiles, bool alike)
+static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, int64_t n_tiles,
+                          bool alike)
 {
     bonds->there = take_numbers(arena, n);
     bonds->small = take_numbers(arena, n);
@@ -205,7 +214,7 @@ static enum vox_status allocate(struct body *body)
     return VOX_OK;
 }
 
-/* ---- the body --------------------------------------------------------------------------------------------- */
+/* ---- the body -------------------------------------------------------------------------------- */
 
 static void place_voxel(struct body *body, const struct cursor *cursor, int32_t substance_index)
 {
@@ -239,7 +248,8 @@ static void place_starts(struct body *body)
         const double z = edge * ((double)(from[2] + row / length[1]) + 0.5);
         for (int64_t x = 0; x < length[0] && row * length[0] + x < slots_in_all(body); x++) {
             int32_t *place = body->coordinates[row * length[0] + x];
-            vec_put(start, row * length[0] + x, (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
+            vec_put(start, row * length[0] + x,
+                    (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
             place[0] = (int32_t)x;
             place[1] = (int32_t)(row % length[1]);
             place[2] = (int32_t)(row / length[1]);
@@ -286,13 +296,15 @@ static void place_bonds(struct body *body, const uint8_t *material)
     do {
         if (!material[cursor.cell]) continue;
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
-            if (has_bond(body->model, material, &cursor, axis)) place_bond(body, slot_of(body, &cursor), axis);
+            if (has_bond(body->model, material, &cursor, axis))
+                place_bond(body, slot_of(body, &cursor), axis);
     } while (step_on(&cursor, &body->model->settings));
 }
 
 static bool same_law(const struct coupling *one, const struct coupling *other)
 {
-#define COMPARE(field) if (one->field != other->field) return false;
+#define COMPARE(field) \
+    if (one->field != other->field) return false;
     BOND_LAW(COMPARE)
 #undef COMPARE
     return true;
@@ -318,8 +330,8 @@ static void set_box(struct body *body)
     body->n_tiles = (body->n_slots + TILE - 1) / TILE;
 }
 
-enum vox_status vox_body_shape(struct body *body, const vox_model *model, const struct census *census,
-                           const uint8_t *material)
+enum vox_status vox_body_shape(struct body *body, const vox_model *model,
+                               const struct census *census, const uint8_t *material)
 {
     body->model = model;
     body->census = *census;
@@ -388,7 +400,7 @@ void vox_body_rest(struct body *body, const double *phase_cycles)
     if (body->model->settings.self_collision) vox_contacts_rest(body);
 }
 
-/* ---- bodies that are used again --------------------------------------------------------------------------- */
+/* ---- bodies that are used again -------------------------------------------------------------- */
 
 static void body_destroy(struct body *body)
 {

@@ -1,5 +1,5 @@
-/* Settings and materials: what their ranges leave to be checked, and the constants that follow from them (sections 1, 5,
- * 6 and 9). */
+/* Settings and materials: what their ranges leave to be checked, and the constants that follow from
+ * them (sections 1, 5, 6 and 9). */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -55,7 +55,8 @@ static double harmonic_mean(double a, double b)
     return a + b > 0.0 ? 2.0 * a * b / (a + b) : 0.0;
 }
 
-static struct damper damper_of(const struct coupling *c, const struct substance *end, const struct vox_settings *s)
+static struct damper damper_of(const struct coupling *c, const struct substance *end,
+                               const struct vox_settings *s)
 {
     const double first_moment = end->mass * s->voxel_size / 2.0;
     const double share = s->bond_damping / 2.0;
@@ -71,8 +72,8 @@ static struct damper damper_of(const struct coupling *c, const struct substance 
 }
 
 /* An Euler-Bernoulli beam of square section, as thick as it is long. */
-static struct coupling coupling_between(const struct substance *lower, const struct substance *upper,
-                                        const struct vox_settings *s)
+static struct coupling coupling_between(const struct substance *lower,
+                                        const struct substance *upper, const struct vox_settings *s)
 {
     const double edge = s->voxel_size;
     const double modulus = harmonic_mean(lower->youngs_modulus, upper->youngs_modulus);
@@ -89,12 +90,13 @@ static struct coupling coupling_between(const struct substance *lower, const str
     c.fastest = fmax(c.stretch / lower->mass, c.stretch / upper->mass);
     const double reduced_mass = 0.5 * harmonic_mean(lower->mass, upper->mass);
     c.touch_drag = s->contact_damping * 2.0 * sqrt(c.stretch * reduced_mass);
-    c.touch_friction = s->contact_friction ? 0.5 * (lower->dynamic_friction + upper->dynamic_friction) : 0.0;
+    c.touch_friction =
+        s->contact_friction ? 0.5 * (lower->dynamic_friction + upper->dynamic_friction) : 0.0;
     return c;
 }
 
-static enum vox_status read_palette(vox_model *model, const struct vox_material *palette, int32_t n_codes,
-                                    int64_t *culprit)
+static enum vox_status read_palette(vox_model *model, const struct vox_material *palette,
+                                    int32_t n_codes, int64_t *culprit)
 {
     for (int32_t code = 0; code < VOX_MAX_CODES; code++) model->of_code[code] = -1;
     for (int32_t code = 1; code < n_codes; code++) {
@@ -115,7 +117,8 @@ static double largest_size(const vox_model *model)
     double amplitude = 0.0;
     for (int32_t i = 0; i < model->n_substances; i++)
         amplitude = fmax(amplitude, fabs(model->substances[i].strain_amplitude));
-    return model->settings.voxel_size * fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
+    return model->settings.voxel_size *
+           fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
 }
 
 static void derive_constants(vox_model *model, const struct vox_material *palette)
@@ -126,7 +129,8 @@ static void derive_constants(vox_model *model, const struct vox_material *palett
     model->too_far = s->largest_distance * s->voxel_size * longest;
     model->floor_rise = tan(RADIANS * s->floor_slope);
     for (int32_t code = 0; code < VOX_MAX_CODES; code++)
-        if (model->of_code[code] >= 0) model->substances[model->of_code[code]] = substance_of(&palette[code], s);
+        if (model->of_code[code] >= 0)
+            model->substances[model->of_code[code]] = substance_of(&palette[code], s);
     for (int32_t i = 0; i < model->n_substances; i++)
         for (int32_t j = 0; j < model->n_substances; j++)
             model->couplings[i * model->n_substances + j] =
@@ -159,18 +163,21 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     model->couplings = malloc(n * n * sizeof *model->couplings);
     model->fixed = calloc((size_t)model->cells, 1);
     model->spares = calloc(1, sizeof *model->spares);
-    if (!model->substances || !model->couplings || !model->fixed || !model->spares) return VOX_NO_MEMORY;
+    if (!model->substances || !model->couplings || !model->fixed || !model->spares)
+        return VOX_NO_MEMORY;
     derive_constants(model, palette);
     const struct vox_settings *s = &model->settings;
     const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);
-    const enum vox_status built =
-        vox_vicinity_create(&model->vicinity, hops, (vox_contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
+    const enum vox_status built = vox_vicinity_create(
+        &model->vicinity, hops,
+        (vox_contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
     if (built != VOX_OK) return built;
     return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }
 
-enum vox_status vox_model_create(const struct vox_settings *settings, const struct vox_material *palette,
-                                 int32_t n_codes, const uint8_t *fixed, vox_model **model, int64_t *culprit)
+enum vox_status vox_model_create(const struct vox_settings *settings,
+                                 const struct vox_material *palette, int32_t n_codes,
+                                 const uint8_t *fixed, vox_model **model, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;

@@ -1,4 +1,5 @@
-/* What settings and properties of materials may be: one table each, from which checks and messages come. */
+/* What settings and properties of materials may be: one table each, from which checks and messages
+ * come. */
 #include "internal.h"
 
 struct row {
@@ -8,9 +9,9 @@ struct row {
 };
 
 /* Of a field of OWNER, the numbers being written as a person reads them. */
-#define ROW(status, field, low, low_in, high, high_in, words)                              \
-    {{#field, status, IS_WHOLE(field), low, high, low_in, high_in, words},                 \
-     offsetof(OWNER, field),                                                               \
+#define ROW(status, field, low, low_in, high, high_in, words)              \
+    {{#field, status, IS_WHOLE(field), low, high, low_in, high_in, words}, \
+     offsetof(OWNER, field),                                               \
      #field " must be " words}
 #define IS_WHOLE(field) _Generic(((OWNER *)0)->field, int64_t: 1, double: 0)
 
@@ -61,7 +62,10 @@ static const struct row properties[] = {
 };
 #undef OWNER
 
-enum { N_SETTINGS = sizeof settings / sizeof *settings, N_PROPERTIES = sizeof properties / sizeof *properties };
+enum {
+    N_SETTINGS = sizeof settings / sizeof *settings,
+    N_PROPERTIES = sizeof properties / sizeof *properties
+};
 
 const struct vox_range *vox_setting_range(int32_t number)
 {
@@ -84,7 +88,8 @@ static enum vox_status check(const struct row *rows, int n, const void *numbers)
 {
     for (int i = 0; i < n; i++) {
         const void *field = (const char *)numbers + rows[i].offset;
-        const double x = rows[i].range.whole ? (double)*(const int64_t *)field : *(const double *)field;
+        const double x =
+            rows[i].range.whole ? (double)*(const int64_t *)field : *(const double *)field;
         if (!is_in(&rows[i].range, x)) return rows[i].range.status;
     }
     return VOX_OK;

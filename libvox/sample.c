@@ -93,7 +93,8 @@ static void write_nan(double *track, int64_t width, int64_t begin, int64_t end)
     for (int64_t i = width * begin; i < width * end; i++) track[i] = NAN;
 }
 
-void vox_sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks, int64_t begin, int64_t end)
+void vox_sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks,
+                              int64_t begin, int64_t end)
 {
     write_nan(tracks->tip, 3, begin, end);
     write_nan(tracks->face, 3, begin, end);

@@ -5,15 +5,17 @@
 
 static const double MOST_CYCLES = 1e6;
 
-/* Whether a batch fits the longest tracks: a sample of a body takes 24 bytes for each cell, or 48 in all. */
+/* Whether a batch fits the longest tracks: a sample of a body takes 24 bytes for each cell, or 48
+ * in all. */
 static bool batch_fits(int64_t n_bodies, int64_t n_samples, int64_t cells)
 {
     const int64_t most = (int64_t)(PTRDIFF_MAX / 48) / cells;
-    return n_bodies >= 0 && n_samples >= 0 && n_bodies <= most && (n_bodies == 0 || n_samples <= most / n_bodies);
+    return n_bodies >= 0 && n_samples >= 0 && n_bodies <= most &&
+           (n_bodies == 0 || n_samples <= most / n_bodies);
 }
 
-enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const uint8_t *material, double *dt,
-                               int64_t *steps, int64_t *culprit)
+enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const uint8_t *material,
+                               double *dt, int64_t *steps, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;
@@ -40,17 +42,21 @@ static bool ascending(int64_t n_samples, const int64_t *sample_steps)
     return true;
 }
 
-static bool phases_are_sane(const vox_model *model, const uint8_t *material, const double *phase_cycles)
+static bool phases_are_sane(const vox_model *model, const uint8_t *material,
+                            const double *phase_cycles)
 {
     for (int64_t cell = 0; cell < model->cells; cell++) {
-        if (!material[cell] || model->substances[model->of_code[material[cell]]].strain_amplitude == 0.0) continue;
+        if (!material[cell] ||
+            model->substances[model->of_code[material[cell]]].strain_amplitude == 0.0)
+            continue;
         if (!(fabs(phase_cycles[cell]) <= MOST_CYCLES)) return false;
     }
     return true;
 }
 
-static enum vox_status check_body(const vox_model *model, const uint8_t *material, const double *phase_cycles,
-                                  int64_t n_samples, const int64_t *sample_steps)
+static enum vox_status check_body(const vox_model *model, const uint8_t *material,
+                                  const double *phase_cycles, int64_t n_samples,
+                                  const int64_t *sample_steps)
 {
     struct census census;
     const enum vox_status status = vox_body_census(model, material, &census);
@@ -74,10 +80,11 @@ static bool advance(struct body *body, bool first_step, bool needed)
     return model->kernel->voxels_advance(body);
 }
 
-/* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step at which it
- * diverged. The very last step need not be made if no sample comes after it and it cannot diverge. */
-static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps, const struct vox_tracks *tracks,
-                   int64_t row)
+/* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step
+ * at which it diverged. The very last step need not be made if no sample comes after it and it
+ * cannot diverge. */
+static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps,
+                   const struct vox_tracks *tracks, int64_t row)
 {
     const int64_t end = row + n_samples, last = body->census.steps - 1;
     for (int64_t step = 0;; step++) {
@@ -114,8 +121,9 @@ static const int64_t *own_steps(const int64_t *sample_steps, int64_t body, int64
 }
 
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
-                             const double *phase_cycles, int64_t n_samples, const int64_t *sample_steps,
-                             const struct vox_tracks *tracks, int64_t *diverged_step, int64_t *culprit)
+                             const double *phase_cycles, int64_t n_samples,
+                             const int64_t *sample_steps, const struct vox_tracks *tracks,
+                             int64_t *diverged_step, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;
@@ -127,17 +135,20 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
     enum vox_status status = VOX_OK;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         const int64_t at = i * model->cells;
-        status = check_body(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples));
+        status = check_body(model, material + at, phase_cycles + at, n_samples,
+                            own_steps(sample_steps, i, n_samples));
         *culprit = i;
     }
     struct body *body = status == VOX_OK ? vox_body_take(model) : NULL;
     if (status == VOX_OK && !body) status = VOX_NO_MEMORY;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         *culprit = i;
-        if (!is_same(model, material, i)) status = set_body(body, model, material + i * model->cells);
+        if (!is_same(model, material, i))
+            status = set_body(body, model, material + i * model->cells);
         if (status != VOX_OK) break;
         vox_body_rest(body, phase_cycles + i * model->cells);
-        diverged_step[i] = run(body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
+        diverged_step[i] =
+            run(body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
     }
     vox_body_return(model, body);
     if (status == VOX_OK) *culprit = -1;

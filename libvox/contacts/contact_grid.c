@@ -1,5 +1,5 @@
-/* The skin of a body by where it is now: cubes at least as wide as the reach, so that whatever is in reach of a voxel
- * lies in its cube or in one beside it. */
+/* The skin of a body by where it is now: cubes at least as wide as the reach, so that whatever is
+ * in reach of a voxel lies in its cube or in one beside it. */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -17,7 +17,9 @@ enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin)
     grid->packed = malloc((size_t)(n_skin + 1) * sizeof *grid->packed);
     grid->cube_of = malloc((size_t)(n_skin + 1) * sizeof *grid->cube_of);
     grid->found = malloc((size_t)(n_skin + 1) * sizeof *grid->found);
-    return grid->begin && grid->voxels && grid->packed && grid->cube_of && grid->found ? VOX_OK : VOX_NO_MEMORY;
+    return grid->begin && grid->voxels && grid->packed && grid->cube_of && grid->found
+               ? VOX_OK
+               : VOX_NO_MEMORY;
 }
 
 void vox_grid_destroy(struct grid *grid)
@@ -109,8 +111,8 @@ void vox_grid_fill(struct grid *grid, const struct body *body, double reach)
 }
 
 /* Adds the voxels of a row of cubes that come after one and are in reach of it. */
-static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first, struct vec position,
-                             int64_t n)
+static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first,
+                             struct vec position, int64_t n)
 {
     const double reach2 = grid->reach * grid->reach;
     for (int32_t k = grid->begin[cube]; k < grid->begin[last + 1]; k++) {

@@ -1,7 +1,7 @@
 /* Self collision: which voxels may touch (section 10).
  *
- * Lists are sorted by their first voxel, then by the second, so that forces are added in an order that does not depend
- * on how a list was found. */
+ * Lists are sorted by their first voxel, then by the second, so that forces are added in an order
+ * that does not depend on how a list was found. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 /* How much denser than the lattice voxels may lie while all contacts are listed. */
 static const double CROWDING = 2.0;
 
-/* ---- distances -------------------------------------------------------------------------------------------- */
+/* ---- distances ------------------------------------------------------------------------------- */
 
 /* How far the fastest voxel may move before the list is made anew, in lattice edges. */
 static double leeway(const struct vox_settings *s)
@@ -28,18 +28,20 @@ static double engine_reach(const struct vox_settings *s)
 double vox_contacts_reach(const vox_model *model)
 {
     const struct vox_settings *s = &model->settings;
-    if (s->complete_contacts) return s->collision_envelope * model->largest_size + 2.0 * (leeway(s) * s->voxel_size);
+    if (s->complete_contacts)
+        return s->collision_envelope * model->largest_size + 2.0 * (leeway(s) * s->voxel_size);
     return fmin(engine_reach(s), s->collision_horizon * model->largest_size);
 }
 
-/* Most pairs that are listed for each voxel: half of the voxels of a sphere, a pair being listed once. */
+/* Most pairs that are listed for each voxel: half of the voxels of a sphere, a pair being listed
+ * once. */
 static int64_t pairs_per_voxel(const vox_model *model)
 {
     const double radius = vox_contacts_reach(model) / model->settings.voxel_size + 1.0;
     return (int64_t)(CROWDING * 0.5 * 4.19 * radius * radius * radius);
 }
 
-/* ---- shape ------------------------------------------------------------------------------------------------ */
+/* ---- shape ----------------------------------------------------------------------------------- */
 
 static void place_skin(struct body *body)
 {
@@ -89,13 +91,13 @@ void vox_contacts_destroy(struct contacts *contacts)
     vox_grid_destroy(&contacts->grid);
 }
 
-/* ---- making a list ---------------------------------------------------------------------------------------- */
+/* ---- making a list --------------------------------------------------------------------------- */
 
 /* When a pair is close enough to be listed, m. */
 struct limits {
-    double reach;       /* of any list */
-    double engine;      /* of the original engine's, or infinite */
-    double horizon;     /* of the original engine's, in sizes of the first voxel; or infinite */
+    double reach;   /* of any list */
+    double engine;  /* of the original engine's, or infinite */
+    double horizon; /* of the original engine's, in sizes of the first voxel; or infinite */
 };
 
 static struct limits limits_of(const vox_model *model)
@@ -108,7 +110,8 @@ static struct limits limits_of(const vox_model *model)
 /* Voxels exactly at the original engine's reach are out. */
 IN_LOOP bool is_due(const struct voxels *v, struct pair pair, const struct limits *limits)
 {
-    const struct vec apart = vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
+    const struct vec apart =
+        vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
     const double distance2 = vec_dot(apart, apart);
     if (distance2 >= limits->reach * limits->reach) return false;
     const double distance = sqrt(distance2);
@@ -140,7 +143,9 @@ static bool list_from_near_by(struct body *body)
     const struct pairs *pairs = &body->contacts.near_by.pairs;
     const struct limits limits = limits_of(body->model);
     for (int64_t i = 0; i < pairs->n; i++)
-        if (is_due(&body->voxels, pairs->list[i], &limits) && !list_one(&body->contacts, pairs->list[i])) return false;
+        if (is_due(&body->voxels, pairs->list[i], &limits) &&
+            !list_one(&body->contacts, pairs->list[i]))
+            return false;
     return true;
 }
 
@@ -154,7 +159,9 @@ static bool list_from_grid(struct body *body)
         const int64_t n = vox_grid_find(&contacts->grid, body, first);
         for (int64_t k = 0; k < n; k++) {
             const struct pair pair = {first, contacts->grid.found[k]};
-            if (!is_due(&body->voxels, pair, &limits) || !vox_near_by_may_collide(body, &contacts->near_by, pair)) continue;
+            if (!is_due(&body->voxels, pair, &limits) ||
+                !vox_near_by_may_collide(body, &contacts->near_by, pair))
+                continue;
             if (!list_one(contacts, pair)) return false;
         }
     }

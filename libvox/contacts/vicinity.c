@@ -8,7 +8,7 @@ static int64_t steps_to(const int32_t by[3])
     return labs(by[0]) + labs(by[1]) + labs(by[2]);
 }
 
-/* ---- the places within a few bonds ------------------------------------------------------------------------ */
+/* ---- the places within a few bonds ----------------------------------------------------------- */
 
 int64_t vox_vicinity_index(const struct vicinity *vicinity, const int32_t by[3])
 {
@@ -48,7 +48,7 @@ static void append_shell(struct vicinity *vicinity, int64_t steps)
     }
 }
 
-/* ---- the cells within a radius ---------------------------------------------------------------------------- */
+/* ---- the cells within a radius --------------------------------------------------------------- */
 
 /* Whether a step in the lattice leads to a later slot. */
 static bool leads_on(int32_t x, int32_t y, int32_t z)
@@ -63,7 +63,8 @@ static void append_cells(struct vicinity *vicinity, double radius)
     for (int32_t z = 0; z <= most; z++) {
         for (int32_t y = -most; y <= most; y++) {
             for (int32_t x = -most; x <= most; x++) {
-                if (!leads_on(x, y, z) || !((double)(x * x + y * y + z * z) < radius * radius)) continue;
+                if (!leads_on(x, y, z) || !((double)(x * x + y * y + z * z) < radius * radius))
+                    continue;
                 struct near_cell *cell = &vicinity->cells[vicinity->n_cells++];
                 *cell = (struct near_cell){.by = {x, y, z}};
                 cell->place = (int32_t)vox_vicinity_index(vicinity, cell->by);

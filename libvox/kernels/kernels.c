@@ -1,7 +1,8 @@
 /* The kernels, and which of them this processor can use. */
 #include "internal.h"
 
-static const struct kernel scalar_kernel = {"scalar", NULL, vox_scalar_bonds_apply, vox_scalar_voxels_advance};
+static const struct kernel scalar_kernel = {"scalar", NULL, vox_scalar_bonds_apply,
+                                            vox_scalar_voxels_advance};
 
 static const struct kernel *const kernels[] = {
     &scalar_kernel,

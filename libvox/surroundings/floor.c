@@ -10,7 +10,8 @@ static struct vec rub(struct body *body, int64_t slot, struct vec force, double 
     const double speed = sqrt(velocity.x * velocity.x + velocity.y * velocity.y);
     const double friction = s->dynamic_friction * push;
     const bool rests = speed == 0.0;
-    if (rests && !(sqrt(force.x * force.x + force.y * force.y) < s->static_friction * push)) return force;
+    if (rests && !(sqrt(force.x * force.x + force.y * force.y) < s->static_friction * push))
+        return force;
     if (!rests && friction * body->census.dt < s->mass * speed) {
         force.x -= friction * velocity.x / speed;
         force.y -= friction * velocity.y / speed;
