@@ -286,3 +286,8 @@ def test_a_mask_of_truths_is_no_mask_of_bits(
 ) -> None:
     with pytest.raises(ValueError, match="fixed must be uint8, got bool"):
         Model(CANVAS, palette, small_settings(), np.zeros(CANVAS, bool))
+
+
+def test_words_of_a_range_are_those_of_the_readme() -> None:
+    assert 0.07 in SETTING_RANGES["duration"]
+    assert SETTING_RANGES["duration"].words == "above 0 and at most 1e9 s"
