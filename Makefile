@@ -4,7 +4,8 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
-SOURCES := pyproject.toml setup.py extensions.py $(wildcard lib*/*.c lib*/*.h lib*/*.py lib*/include/*.h)
+C := $(filter-out $(wildcard lib*/evoframe_*/*.c),$(wildcard lib*/*.[ch] lib*/*/*.[ch])) # but for cffi's
+SOURCES := pyproject.toml setup.py extensions.py $(C) $(wildcard lib*/*/*.py)
 
 .PHONY: run test lint types imports unit browser sanitize fuzz clean
 
@@ -15,10 +16,11 @@ run: $(VENV)/installed
 ## test: everything that CI checks
 test: lint types imports unit browser sanitize fuzz
 
-## lint: style of the Python code
+## lint: style of the Python and the C code
 lint: $(VENV)/developing
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+	$(BIN)/clang-format --dry-run --Werror $(C)
 
 ## types: mypy --strict
 types: $(VENV)/developing

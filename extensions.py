@@ -10,7 +10,10 @@ from cffi import FFI
 
 HERE = Path(__file__).parent  # relative to the project's root, as setuptools wants its sources
 # No contraction to fused multiply-adds: results would depend on the compiler's choice of them.
-FLAGS = ("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
+FLAGS = (
+    *("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"),
+    "-fvisibility=hidden",  # an extension shows nothing but how it is imported
+)
 SANITIZE_FLAGS = (
     *("-O1", "-g", "-fno-omit-frame-pointer"),
     *("-fsanitize=address,undefined", "-fno-sanitize-recover=all"),
@@ -39,14 +42,15 @@ def extension(folder: str, name: str) -> FFI:
     unix = os.name != "nt"
     library = HERE / folder
     header = library / "include" / f"{name}.h"
+    package = library / f"evoframe_{folder}"  # where cffi may have left the C code of an extension
     ffi = FFI()
     ffi.cdef(declarations(header))
     ffi.set_source(
-        f"evoframe_{folder}._{name}",
+        f"{package.name}._{name}",
         PREAMBLE.replace("{header}", header.name),
-        sources=[str(path) for path in sorted(library.glob("*.c"))],
-        depends=[str(path) for path in (*library.glob("*.h"), header)],
-        include_dirs=[str(header.parent)],
+        sources=[str(path) for path in sorted(library.rglob("*.c")) if package not in path.parents],
+        depends=[str(path) for path in sorted(library.rglob("*.h"))],
+        include_dirs=[str(header.parent), str(library)],
         extra_compile_args=[*FLAGS, *(SANITIZE_FLAGS if sanitize else ())] if unix else [],
         extra_link_args=["-fsanitize=address,undefined"] if sanitize else [],
         libraries=["m"] if unix else [],

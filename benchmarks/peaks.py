@@ -23,7 +23,7 @@ INSTRUCTIONS = {
     "avx2": ("-mavx2",),
     "avx512": ("-mavx512f", "-mavx512dq", "-mavx512vl", "-mavx512bw", "-mprefer-vector-width=512"),
 }
-"""What the compiler is told for each kernel of vectors; as in ``libvox/kernel_*.c``."""
+"""What the compiler is told for each kernel of vectors; as in ``libvox/kernels/kernel_*.c``."""
 
 _SOURCE = Path(__file__).with_name("peaks.c")
 _FLAGS = ("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")

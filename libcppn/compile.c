@@ -1,4 +1,5 @@
-/* From nodes and links to a network: checks, the order of evaluation, and what can be computed once. */
+/* From nodes and links to a network: checks, the order of evaluation, and what can be computed
+ * once. */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -52,7 +53,7 @@ static enum cppn_status check_counts(const struct compiler *c, int64_t inputs, i
     return CPPN_OK;
 }
 
-/* ---- names ------------------------------------------------------------------------------------------------- */
+/* ---- names ----------------------------------------------------------------------------------- */
 
 static int compare_names(const void *one, const void *other)
 {
@@ -64,7 +65,8 @@ static int compare_names(const void *one, const void *other)
 static struct vertex *find(const struct compiler *c, int64_t id)
 {
     const struct name wanted = {.id = id};
-    const struct name *found = bsearch(&wanted, c->names, (size_t)c->n_nodes, sizeof wanted, compare_names);
+    const struct name *found =
+        bsearch(&wanted, c->names, (size_t)c->n_nodes, sizeof wanted, compare_names);
     return found ? &c->vertices[found->node] : NULL;
 }
 
@@ -73,7 +75,8 @@ static enum cppn_status name_nodes(struct compiler *c)
     for (int64_t k = 0; k < c->n_nodes; k++) {
         c->culprit = k;
         if (c->nodes[k].id < 0) return CPPN_BAD_NODE_ID;
-        if (!within(CPPN_SIGMOID, c->nodes[k].activation, CPPN_NEG_SIN)) return CPPN_UNKNOWN_ACTIVATION;
+        if (!within(CPPN_SIGMOID, c->nodes[k].activation, CPPN_NEG_SIN))
+            return CPPN_UNKNOWN_ACTIVATION;
         c->names[k] = (struct name){.id = c->nodes[k].id, .node = k};
     }
     qsort(c->names, (size_t)c->n_nodes, sizeof *c->names, compare_names);
@@ -110,13 +113,14 @@ static enum cppn_status connect_nodes(struct compiler *c)
     return CPPN_OK;
 }
 
-/* ---- steps ------------------------------------------------------------------------------------------------- */
+/* ---- steps ----------------------------------------------------------------------------------- */
 
 /* The value of an input, or of a node that is done. */
 static struct value value_of(const struct compiler *c, int64_t source)
 {
     const int64_t n_inputs = c->network->n_inputs;
-    return source < n_inputs ? (struct value){.place = source} : c->vertices[source - n_inputs].value;
+    return source < n_inputs ? (struct value){.place = source}
+                             : c->vertices[source - n_inputs].value;
 }
 
 static void add_term(cppn_network *network, struct value source, double weight)
@@ -129,18 +133,18 @@ static void add_term(cppn_network *network, struct value source, double weight)
 
 static struct value constant(const struct cppn_node *node, double sum)
 {
-    activate((enum cppn_activation)node->activation, node->bias, node->response, 1, &sum);
+    cppn_activate((enum cppn_activation)node->activation, node->bias, node->response, 1, &sum);
     return (struct value){.place = NOWHERE, .constant = sum};
 }
 
-/* A step for a node whose sum is `start` before the arcs that are left, the first of which is no constant. */
+/* A step for a node whose sum is `start` before the arcs that are left, the first of which is no
+ * constant. */
 static struct value add_step(const struct compiler *c, const struct cppn_node *node, double start,
                              const struct arc *arc)
 {
     cppn_network *network = c->network;
     const int64_t first_term = network->n_terms;
-    for (; arc; arc = arc->next)
-        add_term(network, value_of(c, arc->source), arc->weight);
+    for (; arc; arc = arc->next) add_term(network, value_of(c, arc->source), arc->weight);
     network->steps[network->n_steps] = (struct step){
         .activation = (enum cppn_activation)node->activation,
         .bias = node->bias,
@@ -152,7 +156,8 @@ static struct value add_step(const struct compiler *c, const struct cppn_node *n
     return (struct value){.place = network->n_inputs + network->n_steps++};
 }
 
-/* Constants are summed here only up to the first other term: additions keep their order, and so their rounding. */
+/* Constants are summed here only up to the first other term: additions keep their order, and so
+ * their rounding. */
 static void finish(const struct compiler *c, struct vertex *vertex)
 {
     const struct cppn_node *node = &c->nodes[vertex - c->vertices];
@@ -164,7 +169,7 @@ static void finish(const struct compiler *c, struct vertex *vertex)
     vertex->mark = DONE;
 }
 
-/* ---- order ------------------------------------------------------------------------------------------------- */
+/* ---- order ----------------------------------------------------------------------------------- */
 
 static void open_vertex(struct compiler *c, int64_t depth, struct vertex *vertex)
 {
@@ -218,14 +223,15 @@ static enum cppn_status compile(struct compiler *c)
     return status;
 }
 
-/* ---- memory ------------------------------------------------------------------------------------------------ */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 static void *array(int64_t n, size_t size)
 {
     return calloc((size_t)n + 1, size); /* never an empty one, for which NULL may be the answer */
 }
 
-static cppn_network *allocate_network(int64_t inputs, int64_t outputs, int64_t n_nodes, int64_t n_links)
+static cppn_network *allocate_network(int64_t inputs, int64_t outputs, int64_t n_nodes,
+                                      int64_t n_links)
 {
     cppn_network *network = array(1, sizeof *network);
     if (!network) return NULL;
@@ -258,8 +264,9 @@ static void release(struct compiler *c)
     free(c->path);
 }
 
-enum cppn_status cppn_compile(int64_t inputs, int64_t outputs, int64_t n_nodes, const struct cppn_node *nodes,
-                              int64_t n_links, const struct cppn_link *links, cppn_network **network,
+enum cppn_status cppn_compile(int64_t inputs, int64_t outputs, int64_t n_nodes,
+                              const struct cppn_node *nodes, int64_t n_links,
+                              const struct cppn_link *links, cppn_network **network,
                               int64_t *culprit)
 {
     if (culprit) *culprit = -1;

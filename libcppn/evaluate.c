@@ -1,4 +1,5 @@
-/* The evaluation of a compiled network, some points at a time, so that all values stay in the fastest cache. */
+/* The evaluation of a compiled network, some points at a time, so that all values stay in the
+ * fastest cache. */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -16,26 +17,26 @@ static void read_points(const cppn_network *network, int64_t n, const double *re
     }
 }
 
-static void begin_sums(double start, double weight, int64_t n, const double *restrict values, double *restrict sums)
+static void begin_sums(double start, double weight, int64_t n, const double *restrict values,
+                       double *restrict sums)
 {
-    for (int64_t i = 0; i < n; i++)
-        sums[i] = start + values[i] * weight;
+    for (int64_t i = 0; i < n; i++) sums[i] = start + values[i] * weight;
 }
 
-static void add_weighted(double weight, int64_t n, const double *restrict values, double *restrict sums)
+static void add_weighted(double weight, int64_t n, const double *restrict values,
+                         double *restrict sums)
 {
-    for (int64_t i = 0; i < n; i++)
-        sums[i] += values[i] * weight;
+    for (int64_t i = 0; i < n; i++) sums[i] += values[i] * weight;
 }
 
 static void add_constant(double term, int64_t n, double *sums)
 {
-    for (int64_t i = 0; i < n; i++)
-        sums[i] += term;
+    for (int64_t i = 0; i < n; i++) sums[i] += term;
 }
 
 /* Each step's sources have places before its own. */
-static void take_step(const struct step *step, const struct term *terms, int64_t n, const double *values, double *own)
+static void take_step(const struct step *step, const struct term *terms, int64_t n,
+                      const double *values, double *own)
 {
     const struct term *term = terms + step->first_term;
     const struct term *end = term + step->n_terms;
@@ -46,7 +47,7 @@ static void take_step(const struct step *step, const struct term *terms, int64_t
         else
             add_weighted(term->factor, n, values + term->place * BLOCK, own);
     }
-    activate(step->activation, step->bias, step->response, n, own);
+    cppn_activate(step->activation, step->bias, step->response, n, own);
 }
 
 static void write_outputs(const cppn_network *network, int64_t n, const double *restrict values,
@@ -60,16 +61,18 @@ static void write_outputs(const cppn_network *network, int64_t n, const double *
     }
 }
 
-static void evaluate_block(const cppn_network *network, int64_t n, const double *points, double *values,
-                           double *outputs)
+static void evaluate_block(const cppn_network *network, int64_t n, const double *points,
+                           double *values, double *outputs)
 {
     read_points(network, n, points, values);
     for (int64_t k = 0; k < network->n_steps; k++)
-        take_step(&network->steps[k], network->terms, n, values, values + (network->n_inputs + k) * BLOCK);
+        take_step(&network->steps[k], network->terms, n, values,
+                  values + (network->n_inputs + k) * BLOCK);
     write_outputs(network, n, values, outputs);
 }
 
-enum cppn_status cppn_evaluate(const cppn_network *network, int64_t n_points, const double *points, double *outputs)
+enum cppn_status cppn_evaluate(const cppn_network *network, int64_t n_points, const double *points,
+                               double *outputs)
 {
     if (!network || !points || !outputs) return CPPN_NULL_ARGUMENT;
     const int64_t most = PTRDIFF_MAX / (int64_t)sizeof(double);
@@ -80,7 +83,8 @@ enum cppn_status cppn_evaluate(const cppn_network *network, int64_t n_points, co
     if (!values) return CPPN_NO_MEMORY;
     for (int64_t done = 0; done < n_points; done += BLOCK) {
         const int64_t n = n_points - done < BLOCK ? n_points - done : BLOCK;
-        evaluate_block(network, n, points + done * network->n_inputs, values, outputs + done * network->n_outputs);
+        evaluate_block(network, n, points + done * network->n_inputs, values,
+                       outputs + done * network->n_outputs);
     }
     free(values);
     return CPPN_OK;

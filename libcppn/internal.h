@@ -1,4 +1,5 @@
-/* What the files of the library share: the compiled network, and the step from a sum to a node's value. */
+/* What the files of the library share: the compiled network, and the step from a sum to a node's
+ * value. What the linker sees begins with cppn_, here too. */
 #ifndef CPPN_INTERNAL_H
 #define CPPN_INTERNAL_H
 
@@ -52,7 +53,8 @@ struct cppn_network {
     struct value *outputs; /* [n_outputs] */
 };
 
-/* Clamp to +-1e50, far beyond any value at which the formulas still mean something, and make a NaN 0. */
+/* Clamp to +-1e50, far beyond any value at which the formulas still mean something, and make a NaN
+ * 0. */
 IN_LOOP double guarded(double z)
 {
     const double limit = 1e50;
@@ -62,6 +64,7 @@ IN_LOOP double guarded(double z)
 }
 
 /* Replace the sums of n points by the node's values there. */
-void activate(enum cppn_activation activation, double bias, double response, int64_t n, double *sums);
+void cppn_activate(enum cppn_activation activation, double bias, double response, int64_t n,
+                   double *sums);
 
 #endif

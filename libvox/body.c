@@ -3,14 +3,15 @@
 #include <string.h>
 
 #include "internal.h"
-#include "lanes.h"
+#include "kernels/lanes.h"
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
-static const size_t LARGEST_SPARE = (size_t)1 << 26;       /* bytes; asking for more takes little of the time it is used */
-static const size_t LINE = 64;                             /* bytes of the processor's cache, at most */
+/* bytes; asking for more takes little of the time it is used */
+static const size_t LARGEST_SPARE = (size_t)1 << 26;
+static const size_t LINE = 64; /* bytes of the processor's cache, at most */
 
-/* ---- the cells -------------------------------------------------------------------------------------------- */
+/* ---- the cells ------------------------------------------------------------------------------- */
 
 /* A cell of the canvas on the way through it, x fastest. */
 struct cursor {
@@ -27,9 +28,10 @@ static bool step_on(struct cursor *cursor, const struct vox_settings *s)
     return ++cursor->at[2] < s->nz;
 }
 
-/* Whether a bond leads from a cell with a voxel along +axis: neighbours that are both held in all degrees of freedom
- * have none. */
-static bool has_bond(const vox_model *model, const uint8_t *material, const struct cursor *cursor, enum axis axis)
+/* Whether a bond leads from a cell with a voxel along +axis: neighbours that are both held in all
+ * degrees of freedom have none. */
+static bool has_bond(const vox_model *model, const uint8_t *material, const struct cursor *cursor,
+                     enum axis axis)
 {
     const struct vox_settings *s = &model->settings;
     const int64_t stride[] = {1, s->nx, s->nx * s->ny}, length[] = {s->nx, s->ny, s->nz};
@@ -39,12 +41,8 @@ static bool has_bond(const vox_model *model, const uint8_t *material, const stru
     return !(model->fixed[cursor->cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL);
 }
 
-static int32_t substance_at(const vox_model *model, uint8_t code)
-{
-    return model->of_code[code];
-}
-
-/* Section 3. A body without bonds has another step, as the engine does: the square root of the edge is missing. */
+/* Section 3. A body without bonds has another step, as the engine does: the square root of the edge
+ * is missing. */
 static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond,
                                  double fastest_voxel)
 {
@@ -69,7 +67,8 @@ static void widen(struct census *census, const struct cursor *cursor)
     }
 }
 
-enum vox_status body_census(const vox_model *model, const uint8_t *material, struct census *census)
+enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
+                                struct census *census)
 {
     double fastest_bond = 0.0, fastest_voxel = 0.0;
     *census = (struct census){0};
@@ -79,15 +78,17 @@ enum vox_status body_census(const vox_model *model, const uint8_t *material, str
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
-        const int32_t own = substance_at(model, material[cursor.cell]);
+        const int32_t own = model->of_code[material[cursor.cell]];
         census->n_voxels++;
         widen(census, &cursor);
-        fastest_voxel = fmax(fastest_voxel, model->substances[own].youngs_modulus / model->substances[own].mass);
+        fastest_voxel = fmax(fastest_voxel,
+                             model->substances[own].youngs_modulus / model->substances[own].mass);
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
             if (!has_bond(model, material, &cursor, axis)) continue;
-            const int32_t other = substance_at(model, material[cursor.cell + stride[axis]]);
+            const int32_t other = model->of_code[material[cursor.cell + stride[axis]]];
             census->n_bonds++;
-            fastest_bond = fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
+            fastest_bond =
+                fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
         }
     } while (step_on(&cursor, &model->settings));
     if (census->n_voxels == 0) return VOX_EMPTY_BODY;
@@ -95,13 +96,7 @@ enum vox_status body_census(const vox_model *model, const uint8_t *material, str
     return set_clock(census, model, fastest_bond, fastest_voxel);
 }
 
-/* ---- slots ------------------------------------------------------------------------------------------------ */
-
-int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis, bool upwards)
-{
-    if (body->coordinates[slot][axis] == (upwards ? body->census.length[axis] - 1 : 0)) return -1;
-    return upwards ? slot + body->step[axis] : slot - body->step[axis];
-}
+/* ---- slots ----------------------------------------------------------------------------------- */
 
 /* Those after the box too: a tile's upper ends may lie there. */
 static int64_t slots_in_all(const struct body *body)
@@ -119,7 +114,7 @@ static int64_t slot_of(const struct body *body, const struct cursor *cursor)
            body->step[2] * (cursor->at[2] - from[2]);
 }
 
-/* ---- memory ----------------------------------------------------------------------------------------------- */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 /* Hands out parts of a piece of memory; without one, only counts what would be needed. */
 struct arena {
@@ -127,7 +122,8 @@ struct arena {
     size_t used;
 };
 
-/* An odd number of cache lines, so that arrays of one length do not meet in one set of the cache. */
+/* An odd number of cache lines, so that arrays of one length do not meet in one set of the
+ * cache. */
 static void *take(struct arena *arena, int64_t n, size_t size)
 {
     const size_t lines = ((size_t)n * size + LINE - 1) / LINE | 1;
@@ -159,15 +155,18 @@ static void lay_out_voxels(struct voxels *v, struct arena *arena, int64_t n)
     v->momentum = take_vecs(arena, n);
     v->spin = take_vecs(arena, n);
     v->start = take_vecs(arena, n);
-    double **const constants[] = {&v->phase, &v->phase_sine, &v->phase_cosine, &v->amplitude, &v->mobility, &v->drag_rate, &v->weight,
-                                  &v->turnability, &v->spin_kept, &v->mobile};
-    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++) *constants[i] = take_numbers(arena, n);
+    double **const constants[] = {&v->phase,     &v->phase_sine, &v->phase_cosine, &v->amplitude,
+                                  &v->mobility,  &v->drag_rate,  &v->weight,       &v->turnability,
+                                  &v->spin_kept, &v->mobile};
+    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++)
+        *constants[i] = take_numbers(arena, n);
     v->substance = take(arena, n, sizeof *v->substance);
     v->fixed = take(arena, n, sizeof *v->fixed);
     v->touching = take(arena, n, sizeof *v->touching);
 }
 
-static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, int64_t n_tiles, bool alike)
+static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, int64_t n_tiles,
+                          bool alike)
 {
     bonds->there = take_numbers(arena, n);
     bonds->small = take_numbers(arena, n);
@@ -175,7 +174,9 @@ static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, i
     bonds->lower_y = take_numbers(arena, n);
     bonds->lower_z = take_numbers(arena, n);
     bonds->upper = take_vecs(arena, n);
-    for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i] = alike ? NULL : take_numbers(arena, n);
+#define LAY_OUT(field) bonds->coupling.field = alike ? NULL : take_numbers(arena, n);
+    BOND_LAW(LAY_OUT)
+#undef LAY_OUT
     bonds->lower = take(arena, n, sizeof *bonds->lower);
     bonds->tile_used = take(arena, n_tiles, sizeof *bonds->tile_used);
 }
@@ -213,7 +214,7 @@ static enum vox_status allocate(struct body *body)
     return VOX_OK;
 }
 
-/* ---- the body --------------------------------------------------------------------------------------------- */
+/* ---- the body -------------------------------------------------------------------------------- */
 
 static void place_voxel(struct body *body, const struct cursor *cursor, int32_t substance_index)
 {
@@ -247,7 +248,8 @@ static void place_starts(struct body *body)
         const double z = edge * ((double)(from[2] + row / length[1]) + 0.5);
         for (int64_t x = 0; x < length[0] && row * length[0] + x < slots_in_all(body); x++) {
             int32_t *place = body->coordinates[row * length[0] + x];
-            vec_put(start, row * length[0] + x, (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
+            vec_put(start, row * length[0] + x,
+                    (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
             place[0] = (int32_t)x;
             place[1] = (int32_t)(row % length[1]);
             place[2] = (int32_t)(row / length[1]);
@@ -261,7 +263,7 @@ static void place_voxels(struct body *body, const uint8_t *material)
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
-        place_voxel(body, &cursor, substance_at(body->model, material[cursor.cell]));
+        place_voxel(body, &cursor, body->model->of_code[material[cursor.cell]]);
         body->cells[n] = (int32_t)cursor.cell;
         body->slots[n++] = (int32_t)slot_of(body, &cursor);
     } while (step_on(&cursor, &body->model->settings));
@@ -277,9 +279,10 @@ static void place_bond(struct body *body, int64_t lower, enum axis axis)
     body->bonded[upper] |= (uint8_t)(1u << 2 * axis);
     bonds->tile_used[lower / TILE] = 1;
     if (body->coupling) return;
-    double numbers[MOST_COEFFICIENTS];
-    memcpy(numbers, coupling_of(body, lower, upper), (size_t)N_COEFFICIENTS * sizeof *numbers);
-    for (int i = 0; i < N_COEFFICIENTS; i++) bonds->coefficients[i][lower] = numbers[i];
+    const struct coupling *coupling = coupling_of(body, lower, upper);
+#define KEEP(field) bonds->coupling.field[lower] = coupling->field;
+    BOND_LAW(KEEP)
+#undef KEEP
 }
 
 static void place_bonds(struct body *body, const uint8_t *material)
@@ -293,8 +296,18 @@ static void place_bonds(struct body *body, const uint8_t *material)
     do {
         if (!material[cursor.cell]) continue;
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
-            if (has_bond(body->model, material, &cursor, axis)) place_bond(body, slot_of(body, &cursor), axis);
+            if (has_bond(body->model, material, &cursor, axis))
+                place_bond(body, slot_of(body, &cursor), axis);
     } while (step_on(&cursor, &body->model->settings));
+}
+
+static bool same_law(const struct coupling *one, const struct coupling *other)
+{
+#define COMPARE(field) \
+    if (one->field != other->field) return false;
+    BOND_LAW(COMPARE)
+#undef COMPARE
+    return true;
 }
 
 /* The coupling that all bonds of a model's bodies have, or NULL if they may differ. */
@@ -303,7 +316,7 @@ static const struct coupling *only_coupling(const vox_model *model)
     const struct coupling *first = &model->couplings[0];
     const int64_t n = (int64_t)model->n_substances * model->n_substances;
     for (int64_t i = 1; i < n; i++)
-        if (memcmp(first, &model->couplings[i], offsetof(struct coupling, fastest)) != 0) return NULL;
+        if (!same_law(first, &model->couplings[i])) return NULL;
     return first;
 }
 
@@ -317,8 +330,8 @@ static void set_box(struct body *body)
     body->n_tiles = (body->n_slots + TILE - 1) / TILE;
 }
 
-enum vox_status body_shape(struct body *body, const vox_model *model, const struct census *census,
-                           const uint8_t *material)
+enum vox_status vox_body_shape(struct body *body, const vox_model *model,
+                               const struct census *census, const uint8_t *material)
 {
     body->model = model;
     body->census = *census;
@@ -330,8 +343,8 @@ enum vox_status body_shape(struct body *body, const vox_model *model, const stru
     place_starts(body);
     place_voxels(body, material);
     place_bonds(body, material);
-    if (model->settings.fluid_drag > 0.0) status = surface_shape(body);
-    if (status == VOX_OK && model->settings.self_collision) status = contacts_shape(body);
+    if (model->settings.fluid_drag > 0.0) status = vox_surface_shape(body);
+    if (status == VOX_OK && model->settings.self_collision) status = vox_contacts_shape(body);
     return status;
 }
 
@@ -363,7 +376,7 @@ static void rest_bonds(struct bonds *bonds, int64_t n)
     clear(bonds->upper, n);
 }
 
-void body_rest(struct body *body, const double *phase_cycles)
+void vox_body_rest(struct body *body, const double *phase_cycles)
 {
     struct voxels *v = &body->voxels;
     const int64_t n = slots_in_all(body);
@@ -384,21 +397,21 @@ void body_rest(struct body *body, const double *phase_cycles)
     }
     for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
     body->time = body->top_speed = body->farthest = 0.0;
-    if (body->model->settings.self_collision) contacts_rest(body);
+    if (body->model->settings.self_collision) vox_contacts_rest(body);
 }
 
-/* ---- bodies that are used again --------------------------------------------------------------------------- */
+/* ---- bodies that are used again -------------------------------------------------------------- */
 
 static void body_destroy(struct body *body)
 {
     if (!body) return;
-    contacts_destroy(&body->contacts);
-    surface_destroy(&body->surface);
+    vox_contacts_destroy(&body->contacts);
+    vox_surface_destroy(&body->surface);
     free(body->memory);
     free(body);
 }
 
-struct body *body_take(const vox_model *model)
+struct body *vox_body_take(const vox_model *model)
 {
     for (int i = 0; i < MOST_SPARES; i++) {
         struct body *spare = atomic_exchange(&model->spares->bodies[i], NULL);
@@ -407,7 +420,7 @@ struct body *body_take(const vox_model *model)
     return calloc(1, sizeof(struct body));
 }
 
-void body_return(const vox_model *model, struct body *body)
+void vox_body_return(const vox_model *model, struct body *body)
 {
     if (body && body->memory_size > LARGEST_SPARE) {
         body_destroy(body);
@@ -418,7 +431,7 @@ void body_return(const vox_model *model, struct body *body)
     body_destroy(body);
 }
 
-void bodies_destroy(vox_model *model)
+void vox_bodies_destroy(vox_model *model)
 {
     for (int i = 0; i < MOST_SPARES && model->spares; i++) body_destroy(model->spares->bodies[i]);
     free(model->spares);

@@ -1,9 +1,11 @@
-/* What a step cannot do, however its forces turn out: a bound that needs no forces (docs/solver.md). */
+/* What a step cannot do, however its forces turn out: a bound that needs no forces
+ * (docs/solver.md). */
 #include "internal.h"
 
-static const double MARGIN = 1.01;      /* for roundings, and for frames that are not quite unit quaternions */
+/* For roundings, and for frames that are not quite unit quaternions. */
+static const double MARGIN = 1.01;
 static const double FARTHEST_TURN = 6.3; /* rad, of the end of a bond, if no voxel is turned far */
-static const double LEAST_COSINE = 0.75; /* of half the angle by which a voxel is turned, for that */
+static const double LEAST_COSINE = 0.75; /* of half the angle of a voxel's turn, for that */
 static const double SHORTEST = 1e-150;   /* s; the square of a time step must not vanish */
 static const double WILDEST = 1e200;     /* J, of a spin: far from overflowing */
 
@@ -44,23 +46,29 @@ static int64_t most_contacts(struct body *body)
     return most;
 }
 
-bool next_step_is_harmless(struct body *body)
+bool vox_next_step_is_harmless(struct body *body)
 {
     const vox_model *model = body->model;
     const struct vox_settings *s = &model->settings;
-    if (s->floor || s->fluid_drag > 0.0 || s->contact_damping > 0.0 || s->contact_friction) return false;
+    if (s->floor || s->fluid_drag > 0.0 || s->contact_damping > 0.0 || s->contact_friction)
+        return false;
     const double edge = s->voxel_size, dt = body->census.dt;
     if (!(dt >= SHORTEST) || !spins_do_not_grow(body) || !no_voxel_is_wild(body)) return false;
     /* a bond, as it is and as it was, is stretched by less than this, in edges */
     const double stretch = 1.0 + (2.0 * body->farthest + model->largest_size) / edge;
-    /* what moves a voxel by an edge in a step, as a share of what a bond does that is stretched by an edge */
+    /* what moves a voxel by an edge in a step, as a share of what a bond does that is stretched by
+     * an edge */
     const double spring = model->fastest * dt * dt, damper = s->bond_damping * sqrt(spring);
-    const double bonds = 6.0 * (spring * (stretch + FARTHEST_TURN) + damper * 2.0 * (stretch + FARTHEST_TURN));
-    const double touch = s->self_collision ? spring * s->collision_envelope * model->largest_size / edge : 0.0;
+    const double bonds =
+        6.0 * (spring * (stretch + FARTHEST_TURN) + damper * 2.0 * (stretch + FARTHEST_TURN));
+    const double touch =
+        s->self_collision ? spring * s->collision_envelope * model->largest_size / edge : 0.0;
     const double push = bonds + (double)(s->self_collision ? most_contacts(body) : 0) * touch;
     double slow = 0.0;
     for (int32_t i = 0; i < model->n_substances; i++)
         slow = fmax(slow, model->substances[i].slow_drag / model->substances[i].mass * dt);
-    const double way = (1.0 + slow) * body->top_speed * dt / edge + push + fabs(s->gravity) * dt * dt / edge;
-    return MARGIN * stretch <= s->largest_strain && MARGIN * (body->farthest + way * edge) <= model->too_far;
+    const double way =
+        (1.0 + slow) * body->top_speed * dt / edge + push + fabs(s->gravity) * dt * dt / edge;
+    return MARGIN * stretch <= s->largest_strain &&
+           MARGIN * (body->farthest + way * edge) <= model->too_far;
 }

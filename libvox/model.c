@@ -1,23 +1,10 @@
-/* Settings and materials: their checks, and the constants that follow from them (sections 1, 5, 6 and 9). */
+/* Settings and materials: what their ranges leave to be checked, and the constants that follow from
+ * them (sections 1, 5, 6 and 9). */
 #include <stdlib.h>
 
 #include "internal.h"
 
-static const int64_t MOST_SUBSTEPS = 1000;
-static const double STEEPEST = 89.0; /* degrees */
-static const double LONGEST = 1e9;   /* s */
-static const double FARTHEST = 1e9;  /* edges */
 static const double RADIANS = 3.14159265358979323846 / 180.0;
-
-static bool not_negative(double x)
-{
-    return isfinite(x) && x >= 0.0;
-}
-
-static bool within(double low, double x, double high)
-{
-    return low <= x && x <= high; /* false for a NaN */
-}
 
 static bool canvas_fits(const struct vox_settings *s)
 {
@@ -26,62 +13,19 @@ static bool canvas_fits(const struct vox_settings *s)
            s->nz <= most / (s->nx * s->ny);
 }
 
-static enum vox_status check_time(const struct vox_settings *s)
-{
-    if (!(s->time_step_fraction > 0.0 && s->time_step_fraction <= 1.0)) return VOX_BAD_TIME_STEP_FRACTION;
-    if (s->substeps < 1 || s->substeps > MOST_SUBSTEPS) return VOX_BAD_SUBSTEPS;
-    if (s->step_limit < 1) return VOX_BAD_STEP_LIMIT;
-    if (!(s->duration > 0.0 && s->duration <= LONGEST)) return VOX_BAD_DURATION;
-    if (!isfinite(s->temperature_amplitude)) return VOX_BAD_TEMPERATURE_AMPLITUDE;
-    if (!within(1.0 / LONGEST, s->period, LONGEST)) return VOX_BAD_PERIOD;
-    if (!within(0.0, s->start_time, LONGEST)) return VOX_BAD_START_TIME;
-    if (!within(0.0, s->ramp, LONGEST)) return VOX_BAD_RAMP;
-    return VOX_OK;
-}
-
-static enum vox_status check_surroundings(const struct vox_settings *s)
-{
-    if (!isfinite(s->gravity)) return VOX_BAD_GRAVITY;
-    if (!within(-STEEPEST, s->floor_slope, STEEPEST)) return VOX_BAD_FLOOR_SLOPE;
-    if (!not_negative(s->fluid_drag)) return VOX_BAD_FLUID_DRAG;
-    if (!not_negative(s->bond_damping)) return VOX_BAD_BOND_DAMPING;
-    if (!not_negative(s->slow_damping)) return VOX_BAD_SLOW_DAMPING;
-    if (!not_negative(s->floor_damping)) return VOX_BAD_FLOOR_DAMPING;
-    if (!not_negative(s->contact_damping)) return VOX_BAD_CONTACT_DAMPING;
-    return VOX_OK;
-}
-
-static enum vox_status check_contacts(const struct vox_settings *s)
-{
-    if (!within(1.0, s->collision_envelope, 2.0)) return VOX_BAD_COLLISION_ENVELOPE;
-    if (!within(1.0, s->collision_horizon, 4.0)) return VOX_BAD_COLLISION_HORIZON;
-    if (!within(1.0, s->collision_list_factor, 2.0)) return VOX_BAD_COLLISION_LIST_FACTOR;
-    return VOX_OK;
-}
-
 static enum vox_status check_settings(const struct vox_settings *s)
 {
     if (!canvas_fits(s)) return VOX_BAD_CANVAS;
-    if (!within(1e-6, s->voxel_size, 1e6)) return VOX_BAD_VOXEL_SIZE;
-    enum vox_status status = check_time(s);
-    if (status == VOX_OK) status = check_surroundings(s);
-    if (status == VOX_OK) status = check_contacts(s);
+    const enum vox_status status = vox_settings_check(s);
     if (status != VOX_OK) return status;
-    if (!kernel_of(s->kernel)) return VOX_BAD_KERNEL;
-    if (!(s->largest_strain > 0.0 && s->largest_strain <= FARTHEST)) return VOX_BAD_LARGEST_STRAIN;
-    if (!(s->largest_distance > 0.0 && s->largest_distance <= FARTHEST)) return VOX_BAD_LARGEST_DISTANCE;
-    return VOX_OK;
+    return vox_kernel_of(s->kernel) ? VOX_OK : VOX_BAD_KERNEL;
 }
 
 static enum vox_status check_material(const struct vox_material *m, const struct vox_settings *s)
 {
-    if (!within(1e-6, m->youngs_modulus, 1e18)) return VOX_BAD_YOUNGS_MODULUS;
-    if (!(m->poisson_ratio >= 0.0 && m->poisson_ratio < 0.5)) return VOX_BAD_POISSON_RATIO;
-    if (!within(1e-6, m->density, 1e18)) return VOX_BAD_DENSITY;
-    if (!isfinite(m->expansion) || !isfinite(m->expansion * s->temperature_amplitude)) return VOX_BAD_EXPANSION;
-    if (!not_negative(m->static_friction)) return VOX_BAD_STATIC_FRICTION;
-    if (!not_negative(m->dynamic_friction)) return VOX_BAD_DYNAMIC_FRICTION;
-    return VOX_OK;
+    const enum vox_status status = vox_properties_check(m);
+    if (status != VOX_OK) return status;
+    return isfinite(m->expansion * s->temperature_amplitude) ? VOX_OK : VOX_BAD_EXPANSION;
 }
 
 static struct substance substance_of(const struct vox_material *m, const struct vox_settings *s)
@@ -111,7 +55,8 @@ static double harmonic_mean(double a, double b)
     return a + b > 0.0 ? 2.0 * a * b / (a + b) : 0.0;
 }
 
-static struct damper damper_of(const struct coupling *c, const struct substance *end, const struct vox_settings *s)
+static struct damper damper_of(const struct coupling *c, const struct substance *end,
+                               const struct vox_settings *s)
 {
     const double first_moment = end->mass * s->voxel_size / 2.0;
     const double share = s->bond_damping / 2.0;
@@ -127,8 +72,8 @@ static struct damper damper_of(const struct coupling *c, const struct substance 
 }
 
 /* An Euler-Bernoulli beam of square section, as thick as it is long. */
-static struct coupling coupling_between(const struct substance *lower, const struct substance *upper,
-                                        const struct vox_settings *s)
+static struct coupling coupling_between(const struct substance *lower,
+                                        const struct substance *upper, const struct vox_settings *s)
 {
     const double edge = s->voxel_size;
     const double modulus = harmonic_mean(lower->youngs_modulus, upper->youngs_modulus);
@@ -145,12 +90,13 @@ static struct coupling coupling_between(const struct substance *lower, const str
     c.fastest = fmax(c.stretch / lower->mass, c.stretch / upper->mass);
     const double reduced_mass = 0.5 * harmonic_mean(lower->mass, upper->mass);
     c.touch_drag = s->contact_damping * 2.0 * sqrt(c.stretch * reduced_mass);
-    c.touch_friction = s->contact_friction ? 0.5 * (lower->dynamic_friction + upper->dynamic_friction) : 0.0;
+    c.touch_friction =
+        s->contact_friction ? 0.5 * (lower->dynamic_friction + upper->dynamic_friction) : 0.0;
     return c;
 }
 
-static enum vox_status read_palette(vox_model *model, const struct vox_material *palette, int32_t n_codes,
-                                    int64_t *culprit)
+static enum vox_status read_palette(vox_model *model, const struct vox_material *palette,
+                                    int32_t n_codes, int64_t *culprit)
 {
     for (int32_t code = 0; code < VOX_MAX_CODES; code++) model->of_code[code] = -1;
     for (int32_t code = 1; code < n_codes; code++) {
@@ -171,23 +117,20 @@ static double largest_size(const vox_model *model)
     double amplitude = 0.0;
     for (int32_t i = 0; i < model->n_substances; i++)
         amplitude = fmax(amplitude, fabs(model->substances[i].strain_amplitude));
-    return model->settings.voxel_size * fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
-}
-
-/* Of the canvas, in cells. */
-static double longest_edge(const struct vox_settings *s)
-{
-    return fmax((double)s->nx, fmax((double)s->ny, (double)s->nz));
+    return model->settings.voxel_size *
+           fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
 }
 
 static void derive_constants(vox_model *model, const struct vox_material *palette)
 {
     const struct vox_settings *s = &model->settings;
     model->rest_scale = (double)(float)s->voxel_size / s->voxel_size;
-    model->too_far = s->largest_distance * s->voxel_size * longest_edge(s);
+    const double longest = fmax((double)s->nx, fmax((double)s->ny, (double)s->nz)); /* cells */
+    model->too_far = s->largest_distance * s->voxel_size * longest;
     model->floor_rise = tan(RADIANS * s->floor_slope);
     for (int32_t code = 0; code < VOX_MAX_CODES; code++)
-        if (model->of_code[code] >= 0) model->substances[model->of_code[code]] = substance_of(&palette[code], s);
+        if (model->of_code[code] >= 0)
+            model->substances[model->of_code[code]] = substance_of(&palette[code], s);
     for (int32_t i = 0; i < model->n_substances; i++)
         for (int32_t j = 0; j < model->n_substances; j++)
             model->couplings[i * model->n_substances + j] =
@@ -220,18 +163,21 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     model->couplings = malloc(n * n * sizeof *model->couplings);
     model->fixed = calloc((size_t)model->cells, 1);
     model->spares = calloc(1, sizeof *model->spares);
-    if (!model->substances || !model->couplings || !model->fixed || !model->spares) return VOX_NO_MEMORY;
+    if (!model->substances || !model->couplings || !model->fixed || !model->spares)
+        return VOX_NO_MEMORY;
     derive_constants(model, palette);
     const struct vox_settings *s = &model->settings;
     const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);
-    const enum vox_status built =
-        vicinity_create(&model->vicinity, hops, (contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
+    const enum vox_status built = vox_vicinity_create(
+        &model->vicinity, hops,
+        (vox_contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
     if (built != VOX_OK) return built;
     return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }
 
-enum vox_status vox_model_create(const struct vox_settings *settings, const struct vox_material *palette,
-                                 int32_t n_codes, const uint8_t *fixed, vox_model **model, int64_t *culprit)
+enum vox_status vox_model_create(const struct vox_settings *settings,
+                                 const struct vox_material *palette, int32_t n_codes,
+                                 const uint8_t *fixed, vox_model **model, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;
@@ -245,7 +191,7 @@ enum vox_status vox_model_create(const struct vox_settings *settings, const stru
     vox_model *made = calloc(1, sizeof *made);
     if (!made) return VOX_NO_MEMORY;
     made->settings = *settings;
-    made->kernel = kernel_of(settings->kernel);
+    made->kernel = vox_kernel_of(settings->kernel);
     status = fill(made, palette, n_codes, fixed, culprit);
     if (status != VOX_OK) {
         vox_model_destroy(made);
@@ -261,7 +207,7 @@ void vox_model_destroy(vox_model *model)
     free(model->substances);
     free(model->couplings);
     free(model->fixed);
-    vicinity_destroy(&model->vicinity);
-    bodies_destroy(model);
+    vox_vicinity_destroy(&model->vicinity);
+    vox_bodies_destroy(model);
     free(model);
 }

@@ -25,7 +25,7 @@ static struct vec mean_position(const struct body *body, double from_x)
 
 static double largest_start_x(const struct body *body)
 {
-    return body->voxels.start.x[body->census.length[0] - 1]; /* the box ends where the last voxel is */
+    return body->voxels.start.x[body->census.length[0] - 1]; /* the box ends at the last voxel */
 }
 
 static void write_voxels(const struct body *body, double *out)
@@ -50,7 +50,7 @@ static double kinetic_energy(const struct body *body)
 
 static void write_tension(const struct body *body, const struct vox_tracks *tracks, int64_t row)
 {
-    const struct tension tension = bonds_tension(body);
+    const struct tension tension = vox_bonds_tension(body);
     if (tracks->energy) {
         tracks->energy[2 * row] = tension.energy;
         tracks->energy[2 * row + 1] = kinetic_energy(body);
@@ -76,7 +76,7 @@ static void write_momentum(const struct body *body, double *out)
     write_vec(out + 3, angular);
 }
 
-void sample_write(const struct body *body, const struct vox_tracks *tracks, int64_t row)
+void vox_sample_write(const struct body *body, const struct vox_tracks *tracks, int64_t row)
 {
     const int32_t last = body->slots[body->census.n_voxels - 1];
     if (tracks->tip) write_vec(tracks->tip + 3 * row, vec_at(body->voxels.position, last));
@@ -93,7 +93,8 @@ static void write_nan(double *track, int64_t width, int64_t begin, int64_t end)
     for (int64_t i = width * begin; i < width * end; i++) track[i] = NAN;
 }
 
-void sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks, int64_t begin, int64_t end)
+void vox_sample_write_nothing(const vox_model *model, const struct vox_tracks *tracks,
+                              int64_t begin, int64_t end)
 {
     write_nan(tracks->tip, 3, begin, end);
     write_nan(tracks->face, 3, begin, end);

@@ -5,15 +5,17 @@
 
 static const double MOST_CYCLES = 1e6;
 
-/* Whether a batch fits the longest tracks: a sample of a body takes 24 bytes for each cell, or 48 in all. */
+/* Whether a batch fits the longest tracks: a sample of a body takes 24 bytes for each cell, or 48
+ * in all. */
 static bool batch_fits(int64_t n_bodies, int64_t n_samples, int64_t cells)
 {
     const int64_t most = (int64_t)(PTRDIFF_MAX / 48) / cells;
-    return n_bodies >= 0 && n_samples >= 0 && n_bodies <= most && (n_bodies == 0 || n_samples <= most / n_bodies);
+    return n_bodies >= 0 && n_samples >= 0 && n_bodies <= most &&
+           (n_bodies == 0 || n_samples <= most / n_bodies);
 }
 
-enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const uint8_t *material, double *dt,
-                               int64_t *steps, int64_t *culprit)
+enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const uint8_t *material,
+                               double *dt, int64_t *steps, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;
@@ -22,7 +24,7 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
     if (!batch_fits(n_bodies, 0, model->cells)) return VOX_BAD_BATCH;
     for (int64_t i = 0; i < n_bodies; i++) {
         struct census census;
-        const enum vox_status status = body_census(model, material + i * model->cells, &census);
+        const enum vox_status status = vox_body_census(model, material + i * model->cells, &census);
         if (status != VOX_OK) {
             *culprit = i;
             return status;
@@ -40,20 +42,24 @@ static bool ascending(int64_t n_samples, const int64_t *sample_steps)
     return true;
 }
 
-static bool phases_are_sane(const vox_model *model, const uint8_t *material, const double *phase_cycles)
+static bool phases_are_sane(const vox_model *model, const uint8_t *material,
+                            const double *phase_cycles)
 {
     for (int64_t cell = 0; cell < model->cells; cell++) {
-        if (!material[cell] || model->substances[model->of_code[material[cell]]].strain_amplitude == 0.0) continue;
+        if (!material[cell] ||
+            model->substances[model->of_code[material[cell]]].strain_amplitude == 0.0)
+            continue;
         if (!(fabs(phase_cycles[cell]) <= MOST_CYCLES)) return false;
     }
     return true;
 }
 
-static enum vox_status check_body(const vox_model *model, const uint8_t *material, const double *phase_cycles,
-                                  int64_t n_samples, const int64_t *sample_steps)
+static enum vox_status check_body(const vox_model *model, const uint8_t *material,
+                                  const double *phase_cycles, int64_t n_samples,
+                                  const int64_t *sample_steps)
 {
     struct census census;
-    const enum vox_status status = body_census(model, material, &census);
+    const enum vox_status status = vox_body_census(model, material, &census);
     if (status != VOX_OK) return status;
     if (!phases_are_sane(model, material, phase_cycles)) return VOX_BAD_PHASE;
     if (!ascending(n_samples, sample_steps)) return VOX_BAD_SAMPLE_ORDER;
@@ -66,29 +72,30 @@ static bool advance(struct body *body, bool first_step, bool needed)
 {
     const vox_model *model = body->model;
     const bool collides = model->settings.self_collision;
-    if (collides && !contacts_refresh(body, first_step)) return false;
-    if (!needed && next_step_is_harmless(body)) return true;
+    if (collides && !vox_contacts_refresh(body, first_step)) return false;
+    if (!needed && vox_next_step_is_harmless(body)) return true;
     if (!model->kernel->bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt)) return false;
-    if (collides) contacts_apply(body);
-    if (model->settings.fluid_drag > 0.0) fluid_apply(body);
+    if (collides) vox_contacts_apply(body);
+    if (model->settings.fluid_drag > 0.0) vox_fluid_apply(body);
     return model->kernel->voxels_advance(body);
 }
 
-/* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step at which it
- * diverged. The very last step need not be made if no sample comes after it and it cannot diverge. */
-static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps, const struct vox_tracks *tracks,
-                   int64_t row)
+/* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step
+ * at which it diverged. The very last step need not be made if no sample comes after it and it
+ * cannot diverge. */
+static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps,
+                   const struct vox_tracks *tracks, int64_t row)
 {
     const int64_t end = row + n_samples, last = body->census.steps - 1;
     for (int64_t step = 0;; step++) {
         if (row < end && *sample_steps == step) {
-            sample_write(body, tracks, row++);
+            vox_sample_write(body, tracks, row++);
             sample_steps++;
         }
         if (step == body->census.steps) return 0;
         const bool needed = step < last || row < end || body->model->settings.whole_body;
         if (advance(body, step == 0, needed)) continue;
-        sample_write_nothing(body->model, tracks, row, end);
+        vox_sample_write_nothing(body->model, tracks, row, end);
         return step + 1;
     }
 }
@@ -103,8 +110,8 @@ static bool is_same(const vox_model *model, const uint8_t *material, int64_t i)
 static enum vox_status set_body(struct body *body, const vox_model *model, const uint8_t *material)
 {
     struct census census;
-    const enum vox_status status = body_census(model, material, &census);
-    return status == VOX_OK ? body_shape(body, model, &census, material) : status;
+    const enum vox_status status = vox_body_census(model, material, &census);
+    return status == VOX_OK ? vox_body_shape(body, model, &census, material) : status;
 }
 
 /* The row of a body; there may be no array where there is no sample. */
@@ -114,8 +121,9 @@ static const int64_t *own_steps(const int64_t *sample_steps, int64_t body, int64
 }
 
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
-                             const double *phase_cycles, int64_t n_samples, const int64_t *sample_steps,
-                             const struct vox_tracks *tracks, int64_t *diverged_step, int64_t *culprit)
+                             const double *phase_cycles, int64_t n_samples,
+                             const int64_t *sample_steps, const struct vox_tracks *tracks,
+                             int64_t *diverged_step, int64_t *culprit)
 {
     int64_t nobody;
     if (!culprit) culprit = &nobody;
@@ -127,19 +135,22 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
     enum vox_status status = VOX_OK;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         const int64_t at = i * model->cells;
-        status = check_body(model, material + at, phase_cycles + at, n_samples, own_steps(sample_steps, i, n_samples));
+        status = check_body(model, material + at, phase_cycles + at, n_samples,
+                            own_steps(sample_steps, i, n_samples));
         *culprit = i;
     }
-    struct body *body = status == VOX_OK ? body_take(model) : NULL;
+    struct body *body = status == VOX_OK ? vox_body_take(model) : NULL;
     if (status == VOX_OK && !body) status = VOX_NO_MEMORY;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         *culprit = i;
-        if (!is_same(model, material, i)) status = set_body(body, model, material + i * model->cells);
+        if (!is_same(model, material, i))
+            status = set_body(body, model, material + i * model->cells);
         if (status != VOX_OK) break;
-        body_rest(body, phase_cycles + i * model->cells);
-        diverged_step[i] = run(body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
+        vox_body_rest(body, phase_cycles + i * model->cells);
+        diverged_step[i] =
+            run(body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
     }
-    body_return(model, body);
+    vox_body_return(model, body);
     if (status == VOX_OK) *culprit = -1;
     return status;
 }

@@ -21,8 +21,9 @@ fi
 
 flags=(-std=c11 -g -O1 -Wall -Wextra -Wconversion -Wshadow -Werror -fsanitize=address,undefined -fno-sanitize-recover=all)
 for library in "${libraries[@]}"; do
-    sources=("$root/tests/$library/embed.c" "$root/$library"/*.c)
-    "$compiler" "${flags[@]}" -I "$root/$library/include" "${sources[@]}" -o "$place/embed" -lm
+    mapfile -t sources < <(find "$root/$library" -name '*.c' -not -path '*/evoframe_*')
+    includes=(-I "$root/$library/include" -I "$root/$library")
+    "$compiler" "${flags[@]}" "${includes[@]}" "$root/tests/$library/embed.c" "${sources[@]}" -o "$place/embed" -lm
     "$place/embed"
     EVOFRAME_SANITIZE=1 "$python" - "$root" "$library" "$place" <<'END'
 import runpy

@@ -36,7 +36,7 @@ class Work:
         )
 
 
-# Counted in libvox/vector_bonds.h and vector_motion.h, function by function; all bonds have one coupling.
+# Counted in libvox/kernels/vector_bonds.h and vector_motion.h, function by function; there is one coupling.
 _MATRIX = Work(29)  # matrix_of: 10 products, 7 sums for the diagonal, 6 sums and 6 doublings beside it
 _TURN = Work(15)  # turn, turn_back
 _CHORD = Work(10)  # arc_ratio: 8 of the power series, a difference before and a doubling after
@@ -119,7 +119,7 @@ def _work() -> Table:
         ("voxel: its frame and its motion", VOXEL),
     )
     return Table(
-        "Work of a step, counted in libvox/vector_bonds.h and vector_motion.h",
+        "Work of a step, counted in libvox/kernels/vector_bonds.h and vector_motion.h",
         ("", "add and multiply", "divide", "square root"),
         tuple((name, work.operations, work.divisions, work.roots) for name, work in rows),
         f"Traffic: {VOXEL_BYTES:,} bytes a voxel with its bonds and its motion, "

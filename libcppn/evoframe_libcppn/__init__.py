@@ -13,7 +13,11 @@ from numpy.typing import NDArray
 
 from evoframe_libcppn._cppn import ffi, lib
 
-__all__ = ["ACTIVATIONS", "CppnNetwork", "Link", "Node"]
+__all__ = ["ACTIVATIONS", "VERSION", "CppnNetwork", "Link", "Node"]
+
+VERSION: Final[str] = ffi.string(lib.cppn_version()).decode()
+"""Version of the library; its second number rises with whatever changes its interface or a bit of the
+results."""
 
 ACTIVATIONS: Final[tuple[str, ...]] = tuple(
     name.removeprefix("CPPN_").lower()

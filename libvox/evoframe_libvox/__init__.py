@@ -7,7 +7,8 @@ releases the GIL while it works, and keeps no state but memory to be used again,
 
 import itertools
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Final, Literal, get_args
 
 import attrs
@@ -16,7 +17,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from evoframe_libvox._vox import ffi, lib
 
-__all__ = ["COMPILER", "FIX_ALL", "KERNELS", "Material", "Model", "Result", "Settings", "Track"]
+__all__ = [
+    "COMPILER",
+    "FIX_ALL",
+    "KERNELS",
+    "PROPERTY_RANGES",
+    "SETTING_RANGES",
+    "VERSION",
+    "Material",
+    "Model",
+    "Range",
+    "Result",
+    "Settings",
+    "Track",
+]
 
 
 def _kernels() -> Iterator[tuple[str, int]]:
@@ -34,12 +48,68 @@ KERNELS: Final = tuple(_NUMBERS)
 """Names of what can compute on this processor, the fastest last. ``scalar`` is the reference, one
 bond after the other. The others are one program for several instruction sets, with the same bits."""
 
+VERSION: Final[str] = ffi.string(lib.vox_version()).decode()
+"""Version of the library; its second number rises with whatever changes its interface or a bit of the
+results."""
+
 COMPILER: Final[str] = ffi.string(lib.vox_compiler()).decode()
 """Name and version of the compiler that made the library."""
 
 FIX_ALL: Final = 63
 """All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its
 rotation about them."""
+
+
+@attrs.frozen
+class Range:
+    """What a setting, or a property of a material, may be; ``x in range`` checks a number.
+
+    Attributes:
+        lower: Lower bound, in the unit of the setting; ``-inf`` if there is none.
+        upper: Upper bound; ``inf`` if there is none.
+        lower_included: Whether the lower bound itself is allowed; never if it is infinite.
+        upper_included: Whether the upper bound itself is allowed.
+        whole: Whether only whole numbers are allowed.
+        words: What a number must be, such as ``above 0 and at most 1e9 s``.
+    """
+
+    lower: float
+    upper: float
+    lower_included: bool
+    upper_included: bool
+    whole: bool
+    words: str
+
+    def __contains__(self, number: float) -> bool:
+        above = number >= self.lower if self.lower_included else number > self.lower
+        below = number <= self.upper if self.upper_included else number < self.upper
+        return above and below and (not self.whole or number == int(number))
+
+
+def _ranges(nth: Callable[[int], Any]) -> Mapping[str, Range]:
+    """Return the ranges that the library lists, by the name of the field."""
+    ranges = {}
+    for number in itertools.count():
+        found = nth(number)
+        if found == ffi.NULL:
+            break
+        ranges[ffi.string(found.name).decode()] = Range(
+            lower=found.lower,
+            upper=found.upper,
+            lower_included=bool(found.lower_included),
+            upper_included=bool(found.upper_included),
+            whole=bool(found.whole),
+            words=ffi.string(found.words).decode(),
+        )
+    return MappingProxyType(ranges)
+
+
+SETTING_RANGES: Final = _ranges(lib.vox_setting_range)
+"""Range of each number in :class:`Settings`; numbers outside are refused when a model is made."""
+
+PROPERTY_RANGES: Final = _ranges(lib.vox_property_range)
+"""Range of each number in :class:`Material`. An expansion must also be finite when multiplied by the
+temperature's amplitude."""
 
 Track = Literal["tip", "face", "body", "voxels", "energy", "strain", "momentum"]
 

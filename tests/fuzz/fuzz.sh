@@ -81,10 +81,11 @@ sanitizers=(-fsanitize=address,undefined -fno-sanitize-recover=all)
 
 build_vox() {
     local flags=(-std=c11 -g -O1 -fno-omit-frame-pointer -ffp-contract=off -Wall -Wextra -Wconversion -Wshadow)
-    local source
+    local source sources
     mkdir "$place/vox"
-    for source in "$root"/libvox/*.c; do
-        "$clang" "${flags[@]}" "${sanitizers[@]}" -fsanitize=fuzzer-no-link -I "$root/libvox/include" \
+    mapfile -t sources < <(find "$root/libvox" -name '*.c' -not -path '*/evoframe_*')
+    for source in "${sources[@]}"; do
+        "$clang" "${flags[@]}" "${sanitizers[@]}" -fsanitize=fuzzer-no-link -I "$root/libvox/include" -I "$root/libvox" \
             -Dmalloc=fuzz_malloc -Dcalloc=fuzz_calloc -c "$source" -o "$place/vox/$(basename "$source" .c).o"
     done
     "$clang" "${flags[@]}" "${sanitizers[@]}" -fsanitize=fuzzer -I "$root/libvox/include" "$here/fuzz_vox.c" \

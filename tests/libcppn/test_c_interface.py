@@ -1,6 +1,7 @@
 """The C interface, where Python does not pass: missing arrays, sizes, statuses, and a program in C."""
 
 import math
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -8,10 +9,10 @@ from typing import Any
 
 import pytest
 from hypothesis import given, strategies as st
+from symbols import ROOT, sources_of
 
+import evoframe_libcppn
 from evoframe_libcppn._cppn import ffi, lib
-
-ROOT = Path(__file__).parent.parent.parent
 
 NODE = (0, lib.CPPN_SIN, 0.0, 1.0)
 LINK = (-1, 0, 1.0)
@@ -126,12 +127,18 @@ def test_numbers_of_points_do_not_overflow(network: Any, n: int) -> None:
     assert outputs[0] == 7.0
 
 
+def test_the_version_is_that_of_the_header() -> None:
+    header = (ROOT / "libcppn" / "include" / "cppn.h").read_text(encoding="utf-8")
+    [version] = re.findall(r'^#define CPPN_VERSION "(\d+\.\d+\.\d+)"$', header, re.MULTILINE)
+    assert version == evoframe_libcppn.VERSION
+
+
 def test_a_program_in_c_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc")
     assert compiler, "this test needs the C compiler cc, as the installation did"
-    sources = [str(path) for path in sorted((ROOT / "libcppn").glob("*.c"))]
+    sources = map(str, sources_of("libcppn"))
     program = str(tmp_path / "embed")
-    include = ["-I", str(ROOT / "libcppn" / "include")]
+    include = ["-I", str(ROOT / "libcppn" / "include"), "-I", str(ROOT / "libcppn")]
     embed = str(ROOT / "tests" / "libcppn" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
     said = subprocess.run([program], check=True, capture_output=True, text=True).stdout

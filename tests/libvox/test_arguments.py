@@ -1,15 +1,17 @@
 """What the solver refuses, and in which words."""
 
+import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import attrs
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 import evoframe_libvox
-from evoframe_libvox import Material, Model, Settings
+from evoframe_libvox import PROPERTY_RANGES, SETTING_RANGES, Material, Model, Range, Settings
 
 ModelMaker = Callable[..., Model]
 CANVAS = (2, 1, 2)
@@ -74,6 +76,43 @@ def test_every_setting_and_property_has_its_range_tested() -> None:
     switches = {"floor", "self_collision", "contact_friction", "complete_contacts"}
     assert {field.name for field in attrs.fields(Settings)} == SETTINGS.keys() | switches
     assert {field.name for field in attrs.fields(Material)} == MATERIALS.keys()
+
+
+@pytest.mark.parametrize(("ranges", "cases"), [(SETTING_RANGES, SETTINGS), (PROPERTY_RANGES, MATERIALS)])
+def test_ranges_are_those_of_the_solver(
+    ranges: Mapping[str, Range], cases: dict[str, tuple[list[float], str]]
+) -> None:
+    assert ranges.keys() == cases.keys()
+    for field, (values, words) in cases.items():
+        assert words in ranges[field].words
+        refused = set(values) - ({1e308} if field == "expansion" else set())  # times the amplitude
+        assert [value for value in refused if value in ranges[field]] == []
+        assert all(value in ranges[field] for value in EXTREMES.get(field, []))
+
+
+@given(data=st.data(), field=st.sampled_from(sorted(SETTING_RANGES)))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_number_is_refused_if_it_is_not_in_the_range(
+    small_model: ModelMaker, data: st.DataObject, field: str
+) -> None:
+    """But in the range the other settings may still give no usable time step, which no model knows yet."""
+    span = SETTING_RANGES[field]
+    bounds = [bound for bound in (span.lower, span.upper) if math.isfinite(bound)]
+    near = [math.nextafter(bound, way) for bound in bounds for way in (-INF, INF)]
+    numbers = st.integers(-(2**63), 2**63 - 1) if span.whole else st.floats() | st.sampled_from([0.0, *near])
+    value = data.draw(numbers | st.sampled_from([int(b) if span.whole else b for b in bounds] or [0]))
+    if value in span:
+        small_model(CANVAS, **{field: value})
+    else:
+        with pytest.raises(ValueError, match=f"^{re.escape(f'{field} must be {span.words}')}, got "):
+            small_model(CANVAS, **{field: value})
+
+
+def test_only_whole_numbers_are_in_the_range_of_steps() -> None:
+    assert {name for name, span in SETTING_RANGES.items() if span.whole} == {"substeps", "step_limit"}
+    assert 1.5 not in SETTING_RANGES["substeps"]
+    assert 2 in SETTING_RANGES["substeps"]
+    assert NAN not in SETTING_RANGES["substeps"]
 
 
 @pytest.mark.parametrize("field", SETTINGS)
@@ -246,3 +285,8 @@ def test_a_mask_of_truths_is_no_mask_of_bits(
 ) -> None:
     with pytest.raises(ValueError, match="fixed must be uint8, got bool"):
         Model(CANVAS, palette, small_settings(), np.zeros(CANVAS, bool))
+
+
+def test_words_of_a_range_are_those_of_the_readme() -> None:
+    assert 0.07 in SETTING_RANGES["duration"]
+    assert SETTING_RANGES["duration"].words == "above 0 and at most 1e9 s"

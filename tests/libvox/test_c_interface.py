@@ -1,17 +1,16 @@
 """The C interface, where Python does not pass: missing arrays, sizes, statuses, and a program in C."""
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
+from symbols import ROOT, sources_of
 
 import evoframe_libvox
 from evoframe_libvox._vox import ffi, lib
-
-ROOT = Path(__file__).parent.parent.parent
-
 
 FIELDS = {
     "nx": 2,
@@ -105,6 +104,36 @@ def test_every_setting_and_property_has_a_status_of_its_name() -> None:
         for name in fields.keys() - switches - {"whole_body", "used"}:
             bad = float("nan") if isinstance(fields[name], float) else -1
             assert created(statuses[f"VOX_BAD_{name.upper()}"], **{name: bad}) == culprit
+
+
+def in_header(words: str) -> str:
+    """Return a range as comments of the header write it."""
+    for pattern, notation in (
+        (r"between (\S+) and (\S+).*", r"\1 .. \2"),
+        (r"above (\S+) and at most (\S+).*", r"\1 < . <= \2"),
+        (r"at least (\S+) and below (\S+)", r"\1 <= . < \2"),
+        (r"at least (\S+)", r">= \1"),
+        (r"finite and not negative", ">= 0"),
+        (r"finite", ""),
+    ):
+        if re.fullmatch(pattern, words):
+            return re.sub(pattern, notation, words)
+    raise AssertionError(words)
+
+
+def test_the_header_states_the_ranges() -> None:
+    """A person reads them there, while the program has its table."""
+    header = (ROOT / "libvox" / "include" / "vox.h").read_text(encoding="utf-8")
+    ranges = {**evoframe_libvox.SETTING_RANGES, **evoframe_libvox.PROPERTY_RANGES}
+    for name, span in ranges.items():
+        [comment] = re.findall(rf"(?:double|int64_t) {name}; +/\*(.*?)\*/", header, re.DOTALL)
+        assert in_header(span.words) in comment
+
+
+def test_there_is_no_range_beyond_the_last() -> None:
+    for nth, count in ((lib.vox_setting_range, 21), (lib.vox_property_range, 6)):
+        assert nth(count - 1) != ffi.NULL
+        assert nth(count) == nth(-1) == nth(-(2**31)) == nth(2**31 - 1) == ffi.NULL
 
 
 def test_the_first_bad_cell_of_the_fixed_ones_is_named() -> None:
@@ -209,12 +238,18 @@ def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> N
     assert status == lib.VOX_BAD_BATCH
 
 
+def test_the_version_is_that_of_the_header() -> None:
+    header = (ROOT / "libvox" / "include" / "vox.h").read_text(encoding="utf-8")
+    [version] = re.findall(r'^#define VOX_VERSION "(\d+\.\d+\.\d+)"$', header, re.MULTILINE)
+    assert version == evoframe_libvox.VERSION
+
+
 def test_a_program_in_c_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc")
     assert compiler, "this test needs the C compiler cc, as the installation did"
-    sources = [str(path) for path in sorted((ROOT / "libvox").glob("*.c"))]
+    sources = map(str, sources_of("libvox"))
     program = str(tmp_path / "embed")
-    include = ["-I", str(ROOT / "libvox" / "include")]
+    include = ["-I", str(ROOT / "libvox" / "include"), "-I", str(ROOT / "libvox")]
     embed = str(ROOT / "tests" / "libvox" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
     said = subprocess.run([program], check=True, capture_output=True, text=True).stdout

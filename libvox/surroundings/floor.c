@@ -10,7 +10,8 @@ static struct vec rub(struct body *body, int64_t slot, struct vec force, double 
     const double speed = sqrt(velocity.x * velocity.x + velocity.y * velocity.y);
     const double friction = s->dynamic_friction * push;
     const bool rests = speed == 0.0;
-    if (rests && !(sqrt(force.x * force.x + force.y * force.y) < s->static_friction * push)) return force;
+    if (rests && !(sqrt(force.x * force.x + force.y * force.y) < s->static_friction * push))
+        return force;
     if (!rests && friction * body->census.dt < s->mass * speed) {
         force.x -= friction * velocity.x / speed;
         force.y -= friction * velocity.y / speed;
@@ -20,7 +21,7 @@ static struct vec rub(struct body *body, int64_t slot, struct vec force, double 
     return (struct vec){0.0, 0.0, force.z};
 }
 
-void floor_apply(struct body *body, int64_t slot)
+void vox_floor_apply(struct body *body, int64_t slot)
 {
     const struct substance *s = substance_of_voxel(body, slot);
     const struct voxels *v = &body->voxels;

@@ -4,7 +4,8 @@
 static struct vec corner_of(const struct voxels *v, int64_t slot, int corner)
 {
     const double half = 0.5 * v->size[slot];
-    const struct vec local = {corner & 1 ? half : -half, corner & 2 ? half : -half, corner & 4 ? half : -half};
+    const struct vec local = {corner & 1 ? half : -half, corner & 2 ? half : -half,
+                              corner & 4 ? half : -half};
     return vec_add(vec_at(v->position, slot), quat_rotate(quat_at(v->orientation, slot), local));
 }
 
@@ -12,20 +13,23 @@ static struct vec corner_of(const struct voxels *v, int64_t slot, int corner)
 static void place_corners(struct body *body)
 {
     struct surface *surface = &body->surface;
-    for (int64_t i = 0; i < surface->n_corners; i++) surface->corners[i] = (struct vec){0.0, 0.0, 0.0};
+    for (int64_t i = 0; i < surface->n_corners; i++)
+        surface->corners[i] = (struct vec){0.0, 0.0, 0.0};
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
         for (int corner = 0; corner < 8; corner++) {
             const int32_t at = surface->corners_of[slot][corner];
             if (at < 0) continue;
-            const struct vec own = vec_scale(surface->share[at], corner_of(&body->voxels, slot, corner));
+            const struct vec own =
+                vec_scale(surface->share[at], corner_of(&body->voxels, slot, corner));
             surface->corners[at] = vec_add(surface->corners[at], own);
         }
     }
 }
 
 /* Force on a triangle that moves with a velocity: none on its lee. */
-static struct vec triangle_drag(double coefficient, struct vec a, struct vec b, struct vec c, struct vec velocity)
+static struct vec triangle_drag(double coefficient, struct vec a, struct vec b, struct vec c,
+                                struct vec velocity)
 {
     const struct vec doubled = vec_cross(vec_sub(b, a), vec_sub(c, a));
     const double twice_area = sqrt(vec_dot(doubled, doubled));
@@ -35,7 +39,7 @@ static struct vec triangle_drag(double coefficient, struct vec a, struct vec b, 
     return vec_scale(-0.5 * coefficient * speed * speed, doubled);
 }
 
-void fluid_apply(struct body *body)
+void vox_fluid_apply(struct body *body)
 {
     const double coefficient = body->model->settings.fluid_drag;
     const struct vec *corners = body->surface.corners;
@@ -47,6 +51,7 @@ void fluid_apply(struct body *body)
         const struct vec velocity = velocity_of(&body->voxels, facet->slot);
         const struct vec drag = triangle_drag(coefficient, a, b, c, velocity);
         const struct vec force = vec_add(vec_at(body->voxels.force, facet->slot), drag);
-        vec_put(body->voxels.force, facet->slot, vec_add(force, triangle_drag(coefficient, a, c, d, velocity)));
+        vec_put(body->voxels.force, facet->slot,
+                vec_add(force, triangle_drag(coefficient, a, c, d, velocity)));
     }
 }

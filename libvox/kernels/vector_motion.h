@@ -1,28 +1,24 @@
-/* How voxels move and how their sizes follow the actuation (sections 4, 7 and 8) in the fast kernel: see vector_kernel.h,
- * which includes this. */
-
-
-/* Force on a voxel with slow damping and weight. */
-IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentum, double weight)
-{
-    return (struct vec){force.x - drag_rate * momentum.x, force.y - drag_rate * momentum.y,
-                        (force.z - drag_rate * momentum.z) + weight};
-}
+/* How voxels move and how their sizes follow the actuation (sections 4, 7 and 8) in the fast
+ * kernel: see vector_kernel.h, which includes this. */
 
 /* Squares of the largest speeds and ways from the start, in each lane. */
 struct extremes {
     lanes speed2, way2;
 } IN_LINES;
 
-/* Moves a tile's voxels that are free to move. How many have diverged? The constant says whether slow damping and weight
- * are part of the forces already. */
-IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, double too_far, bool complete,
-                          struct extremes *restrict extremes)
+/* Moves a tile's voxels that are free to move. How many have diverged? The constant says whether
+ * slow damping and weight are part of the forces already. */
+IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, double too_far,
+                          bool complete, struct extremes *restrict extremes)
 {
-    double *restrict px = v->position.x + base, *restrict py = v->position.y + base, *restrict pz = v->position.z + base;
-    double *restrict mx = v->momentum.x + base, *restrict my = v->momentum.y + base, *restrict mz = v->momentum.z + base;
-    double *restrict fx = v->force.x + base, *restrict fy = v->force.y + base, *restrict fz = v->force.z + base;
-    const double *restrict sx = v->start.x + base, *restrict sy = v->start.y + base, *restrict sz = v->start.z + base;
+    double *restrict px = v->position.x + base, *restrict py = v->position.y + base,
+                     *restrict pz = v->position.z + base;
+    double *restrict mx = v->momentum.x + base, *restrict my = v->momentum.y + base,
+                     *restrict mz = v->momentum.z + base;
+    double *restrict fx = v->force.x + base, *restrict fy = v->force.y + base,
+                     *restrict fz = v->force.z + base;
+    const double *restrict sx = v->start.x + base, *restrict sy = v->start.y + base,
+                           *restrict sz = v->start.z + base;
     const double *restrict mobility = v->mobility + base, *restrict mobile = v->mobile + base;
     const double *restrict drag_rate = v->drag_rate + base, *restrict weight = v->weight + base;
     int64_t lost = 0;
@@ -31,9 +27,11 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
         const bool moves = mobile[i] != 0.0;
         const struct vec last = {mx[i], my[i], mz[i]}, bare = {fx[i], fy[i], fz[i]};
         const struct vec force = complete ? bare : loaded(bare, drag_rate[i], last, weight[i]);
-        const struct vec momentum = {last.x + dt * force.x, last.y + dt * force.y, last.z + dt * force.z};
+        const struct vec momentum = {last.x + dt * force.x, last.y + dt * force.y,
+                                     last.z + dt * force.z};
         const struct vec velocity = vec_scale(mobility[i], momentum);
-        const struct vec position = {px[i] + dt * velocity.x, py[i] + dt * velocity.y, pz[i] + dt * velocity.z};
+        const struct vec position = {px[i] + dt * velocity.x, py[i] + dt * velocity.y,
+                                     pz[i] + dt * velocity.z};
         const struct vec way = {position.x - sx[i], position.y - sy[i], position.z - sz[i]};
         const double speed2 = choose(moves, vec_dot(velocity, velocity), 0.0);
         const double way2 = choose(moves, vec_dot(way, way), 0.0);
@@ -51,13 +49,14 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
     return lost;
 }
 
-/* Adds slow damping, weight and the floor to the forces on a tile's voxels that are free to move. */
+/* Adds slow damping, weight and the floor to the forces on a tile's voxels that are free to
+ * move. */
 static void stand_tile(struct body *body, int64_t base)
 {
     for (int64_t slot = base; slot < base + TILE; slot++) {
         if (body->voxels.mobile[slot] == 0.0) continue;
-        voxel_load(body, slot);
-        floor_apply(body, slot);
+        vox_voxel_load(body, slot);
+        vox_floor_apply(body, slot);
     }
 }
 
@@ -66,9 +65,12 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
 {
     double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
     double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
-    double *restrict sx = v->spin.x + base, *restrict sy = v->spin.y + base, *restrict sz = v->spin.z + base;
-    double *restrict tx = v->torque.x + base, *restrict ty = v->torque.y + base, *restrict tz = v->torque.z + base;
-    const double *restrict kept = v->spin_kept + base, *restrict turnability = v->turnability + base;
+    double *restrict sx = v->spin.x + base, *restrict sy = v->spin.y + base,
+                     *restrict sz = v->spin.z + base;
+    double *restrict tx = v->torque.x + base, *restrict ty = v->torque.y + base,
+                     *restrict tz = v->torque.z + base;
+    const double *restrict kept = v->spin_kept + base;
+    const double *restrict turnability = v->turnability + base;
     const double *restrict mobile = v->mobile + base;
     int64_t lost = 0;
     NO_LANE_DEPENDS_ON_ANOTHER
@@ -80,7 +82,8 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
         const struct quat q = {qw[i], qx[i], qy[i], qz[i]};
         const struct quat dq = quat_mul((struct quat){0.0, rate.x, rate.y, rate.z}, q);
         const double half = 0.5 * dt;
-        const struct quat r = {q.w + half * dq.w, q.x + half * dq.x, q.y + half * dq.y, q.z + half * dq.z};
+        const struct quat r = {q.w + half * dq.w, q.x + half * dq.x, q.y + half * dq.y,
+                               q.z + half * dq.z};
         const double norm = 1.0 / sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
         const bool straight = r.w * norm >= 1.0;
         lost += moves & !(vec_dot(spin, spin) * turnability[i] <= DBL_MAX);
@@ -96,20 +99,23 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
     return lost;
 }
 
-/* Lets the sizes of a tile's voxels follow the actuation, of which `swing` and `sway` are sine and cosine, as in
- * motion.c. */
-static void size_tile(const struct voxels *v, int64_t base, const struct actuation *actuation, double swing, double sway)
+/* Lets the sizes of a tile's voxels follow the actuation, of which `swing` and `sway` are sine and
+ * cosine, as in motion.c. */
+static void size_tile(const struct voxels *v, int64_t base, const struct actuation *actuation,
+                      double swing, double sway)
 {
     const double edge = actuation->edge, rest = actuation->rest, gain = actuation->gain;
     const double *restrict amplitude = v->amplitude + base;
-    const double *restrict phase_sine = v->phase_sine + base, *restrict phase_cosine = v->phase_cosine + base;
+    const double *restrict phase_sine = v->phase_sine + base;
+    const double *restrict phase_cosine = v->phase_cosine + base;
     double *restrict size = v->size + base;
     if (gain == 0.0) {
         for (int64_t i = 0; i < TILE; i++) size[i] = edge * rest;
         return;
     }
     for (int64_t i = 0; i < TILE; i++) {
-        const double next = edge * (rest + gain * amplitude[i] * (swing * phase_cosine[i] + sway * phase_sine[i]));
+        const double next =
+            edge * (rest + gain * amplitude[i] * (swing * phase_cosine[i] + sway * phase_sine[i]));
         const bool shrinks = (next < SMALLEST_SCALE * edge) & (next < size[i]);
         const bool grows = (next > LARGEST_SCALE * edge) & (next > size[i]);
         size[i] = choose(shrinks | grows, size[i], next);
@@ -120,7 +126,7 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
 static bool advance_partly_held(struct body *body)
 {
     bool fine = true;
-    for (int64_t i = 0; i < body->n_partly; i++) fine &= voxel_advance(body, body->partly[i]);
+    for (int64_t i = 0; i < body->n_partly; i++) fine &= vox_voxel_advance(body, body->partly[i]);
     return fine;
 }
 
@@ -128,7 +134,8 @@ IN_LOOP int64_t advance_tile(struct body *body, int64_t base, struct extremes *e
 {
     const struct voxels *v = &body->voxels;
     const double dt = body->census.dt, too_far = body->model->too_far;
-    if (!body->model->settings.floor) return move_tile(v, base, dt, too_far, false, extremes) + turn_tile(v, base, dt);
+    if (!body->model->settings.floor)
+        return move_tile(v, base, dt, too_far, false, extremes) + turn_tile(v, base, dt);
     stand_tile(body, base);
     return move_tile(v, base, dt, too_far, true, extremes) + turn_tile(v, base, dt);
 }
@@ -143,7 +150,7 @@ static double raised(double number, const double *squares)
 
 static bool VECTOR(voxels_advance)(struct body *body)
 {
-    const struct actuation actuation = actuation_at(body->model, body->time);
+    const struct actuation actuation = vox_actuation_at(body->model, body->time);
     const double swing = sine(TWO_PI * actuation.cycles), sway = cosine(TWO_PI * actuation.cycles);
     struct extremes extremes = {{0.0}, {0.0}};
     int64_t lost = 0;

@@ -1,5 +1,6 @@
-/* Mathematics for loops that the compiler turns into vector instructions: neither branches nor calls. Each function is
- * within 2 units in the last place, and gives the same bits with every instruction set. */
+/* Mathematics for loops that the compiler turns into vector instructions: neither branches nor
+ * calls. Each function is within 2 units in the last place, and gives the same bits with every
+ * instruction set. */
 #ifndef VOX_LANES_H
 #define VOX_LANES_H
 
@@ -17,13 +18,16 @@ IN_LOOP double inverse_root_of_half(double x)
     return 1.0 + x * (1.0 / 4 + x * (3.0 / 32 + x * (5.0 / 128 + x * (35.0 / 2048))));
 }
 
-/* asin(sqrt(y)) / sqrt(y) for y from 0 to 1/4: the polynomial of its degree with the least error, 1.7e-17. */
+/* asin(sqrt(y)) / sqrt(y) for y from 0 to 1/4: the polynomial of its degree with the least error,
+ * 1.7e-17. */
 IN_LOOP double arcsine_ratio(double y)
 {
-    const double high = 0.012170138592391726 +
-                        y * (0.0065293020047365695 +
-                             y * (0.019513468251252167 + y * (-0.016187392271599134 + y * 0.03187962140081284)));
-    const double middle = 0.022371749733164054 + y * (0.01735977964134998 + y * (0.01388484282640208 + y * high));
+    const double high =
+        0.012170138592391726 +
+        y * (0.0065293020047365695 +
+             y * (0.019513468251252167 + y * (-0.016187392271599134 + y * 0.03187962140081284)));
+    const double middle =
+        0.022371749733164054 + y * (0.01735977964134998 + y * (0.01388484282640208 + y * high));
     const double low = 0.04464285680599894 + y * (0.03038195969768514 + y * middle);
     return 1.0 + y * (0.16666666666664942 + y * (0.07500000000385201 + y * low));
 }
@@ -31,7 +35,8 @@ IN_LOOP double arcsine_ratio(double y)
 /* acos(w) for w from -1 to 1, by the nearer of asin's two ends. */
 IN_LOOP double arccosine(double w)
 {
-    const double half_pi = 1.5707963267948966, beyond = 6.123233995736766e-17; /* their sum is pi / 2 */
+    /* their sum is pi / 2 */
+    const double half_pi = 1.5707963267948966, beyond = 6.123233995736766e-17;
     const double size = fabs(w), chord2 = 0.5 - 0.5 * size;
     const bool near_end = size >= 0.5;
     const double y = choose(near_end, chord2, w * w);
@@ -43,17 +48,25 @@ IN_LOOP double arccosine(double w)
 /* sin(x): within 2 units in the last place up to 1e6 or so; beyond, x itself is no more exact. */
 IN_LOOP double sine(double x)
 {
-    const double whole = 6755399441055744.0; /* 1.5 * 2^52: what is added to it is rounded to a whole number */
-    /* pi in three parts, of which the first two have 33 bits each: their products with n are exact */
-    const double first = 3.1415926534682512, second = 1.2154201012607932e-10, third = 4.044532497591901e-21;
+    /* 1.5 * 2^52: what is added to it is rounded to a whole number */
+    const double whole = 6755399441055744.0;
+    /* pi in three parts, of which two have 33 bits each: their products with n are exact */
+    const double first = 3.1415926534682512, second = 1.2154201012607932e-10,
+                 third = 4.044532497591901e-21;
     const double n = (x * 0.3183098861837907 + whole) - whole, half = 0.5 * n;
     const bool odd = (half + whole) - whole != half;
     const double near = ((x - n * first) - n * second) - n * third;
-    const double r = choose(fabs(near) <= 1.6, near, 0.0), y = r * r; /* other if x is beyond all sense */
-    const double high = 1.0 / 6227020800.0 + y * (-1.0 / 1307674368000.0 + y * (1.0 / 355687428096000.0 +
-                        y * (-1.0 / 121645100408832000.0 + y * (1.0 / 51090942171709440000.0))));
-    const double low = -1.0 / 6.0 + y * (1.0 / 120.0 + y * (-1.0 / 5040.0 + y * (1.0 / 362880.0 +
-                       y * (-1.0 / 39916800.0 + y * high))));
+    /* other if x is beyond all sense */
+    const double r = choose(fabs(near) <= 1.6, near, 0.0), y = r * r;
+    const double high =
+        1.0 / 6227020800.0 +
+        y * (-1.0 / 1307674368000.0 +
+             y * (1.0 / 355687428096000.0 +
+                  y * (-1.0 / 121645100408832000.0 + y * (1.0 / 51090942171709440000.0))));
+    const double low =
+        -1.0 / 6.0 +
+        y * (1.0 / 120.0 +
+             y * (-1.0 / 5040.0 + y * (1.0 / 362880.0 + y * (-1.0 / 39916800.0 + y * high))));
     const double sine = r + r * (y * low);
     return choose(odd, -sine, sine);
 }

@@ -5,4 +5,4 @@
 
 #include "vector_kernel.h"
 
-const struct kernel generic_kernel = VECTOR_KERNEL("generic", NULL);
+const struct kernel vox_generic_kernel = VECTOR_KERNEL("generic", NULL);

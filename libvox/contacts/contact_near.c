@@ -1,11 +1,12 @@
-/* Self collision: which pairs can touch as long as no voxel is far from its start. What decides it, whether cells near
- * each other have voxels and whether a few bonds join them, is computed for 64 slots at a time. */
+/* Self collision: which pairs can touch as long as no voxel is far from its start. What decides it,
+ * whether cells near each other have voxels and whether a few bonds join them, is computed for 64
+ * slots at a time. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "internal.h"
 
-/* ---- bits, one for each slot ------------------------------------------------------------------------------ */
+/* ---- bits, one for each slot ----------------------------------------------------------------- */
 
 static int64_t words_of(const struct body *body)
 {
@@ -48,7 +49,7 @@ static int64_t slots_by(const struct body *body, const int32_t by[3])
     return by[0] + by[1] * body->step[1] + by[2] * body->step[2];
 }
 
-/* ---- voxels that are joined by a few bonds ---------------------------------------------------------------- */
+/* ---- voxels that are joined by a few bonds --------------------------------------------------- */
 
 /* Marks from which voxels one of the shortest ways to a place consists of bonds. */
 static void join(const struct body *body, const struct near_by *near_by, int64_t place_index)
@@ -76,7 +77,8 @@ static void join_all(const struct body *body, const struct near_by *near_by)
         for (int side = 0; side < 6; side++)
             if (body->bonded[slot] >> side & 1) set(near_by->bonds + side * words_of(body), slot);
     }
-    for (int64_t place = 1; place < body->model->vicinity.n_places; place++) join(body, near_by, place);
+    for (int64_t place = 1; place < body->model->vicinity.n_places; place++)
+        join(body, near_by, place);
 }
 
 /* Marks the voxels to which a way of at most so many bonds leads: a breadth-first search. */
@@ -93,7 +95,8 @@ static void search_from(const struct body *body, struct search *search, int32_t 
             const int32_t slot = search->queue[begin];
             for (int side = 0; side < 6; side++) {
                 if (!(body->bonded[slot] >> side & 1)) continue;
-                const int64_t step = body->step[side / 2], next = side % 2 ? slot + step : slot - step;
+                const int64_t step = body->step[side / 2],
+                              next = side % 2 ? slot + step : slot - step;
                 if (search->reached[next] == search->number) continue;
                 search->reached[next] = search->number;
                 search->queue[n++] = (int32_t)next;
@@ -102,9 +105,10 @@ static void search_from(const struct body *body, struct search *search, int32_t 
     }
 }
 
-/* Whether two voxels are joined by few bonds, though not by one of the shortest ways on the lattice: any other is longer
- * by two bonds at least. */
-static bool is_joined_around(const struct body *body, struct search *search, struct pair pair, const int32_t by[3])
+/* Whether two voxels are joined by few bonds, though not by one of the shortest ways on the
+ * lattice: any other is longer by two bonds at least. */
+static bool is_joined_around(const struct body *body, struct search *search, struct pair pair,
+                             const int32_t by[3])
 {
     const int64_t hops = body->model->vicinity.hops;
     if (labs(by[0]) + labs(by[1]) + labs(by[2]) + 2 > hops) return false;
@@ -118,23 +122,23 @@ static void set_offset(const struct body *body, struct pair pair, int32_t by[3])
     for (int axis = 0; axis < 3; axis++) by[axis] = to[axis] - from[axis];
 }
 
-bool near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair)
+bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair)
 {
     const uint8_t *fixed = body->voxels.fixed;
     if (fixed[pair.first] == VOX_FIX_ALL && fixed[pair.second] == VOX_FIX_ALL) return false;
     int32_t by[3];
     set_offset(body, pair, by);
-    const int64_t place = vicinity_index(&body->model->vicinity, by);
+    const int64_t place = vox_vicinity_index(&body->model->vicinity, by);
     if (place >= 0 && is_set(near_by->joined + place * words_of(body), pair.first)) return false;
     return !is_joined_around(body, &near_by->search, pair, by);
 }
 
-/* ---- the list --------------------------------------------------------------------------------------------- */
+/* ---- the list -------------------------------------------------------------------------------- */
 
-/* Which of 64 voxels of the skin have another in a near cell, to which they are not joined straight. A cell across the
- * border of the box counts as the one where its slot is. */
-static uint64_t candidates(const struct body *body, const struct near_by *near_by, const struct near_cell *cell,
-                           int64_t word)
+/* Which of 64 voxels of the skin have another in a near cell, to which they are not joined
+ * straight. A cell across the border of the box counts as the one where its slot is. */
+static uint64_t candidates(const struct body *body, const struct near_by *near_by,
+                           const struct near_cell *cell, int64_t word)
 {
     const int64_t n_words = words_of(body), from = 64 * word + slots_by(body, cell->by);
     uint64_t bits = near_by->skin[word] & bits_from(near_by->skin, n_words, from);
@@ -149,9 +153,10 @@ static bool is_at(const struct body *body, struct pair pair, const int32_t by[3]
     return found[0] == by[0] && found[1] == by[1] && found[2] == by[2];
 }
 
-/* Hands each pair of voxels in near cells to `begin`, which counts the pairs of each voxel, or, if there is one, to the
- * list, where `begin` says at which place the next pair of a voxel goes. */
-static void visit(const struct body *body, const struct near_by *near_by, int64_t *begin, struct pair *list)
+/* Hands each pair of voxels in near cells to `begin`, which counts the pairs of each voxel, or, if
+ * there is one, to the list, where `begin` says at which place the next pair of a voxel goes. */
+static void visit(const struct body *body, const struct near_by *near_by, int64_t *begin,
+                  struct pair *list)
 {
     const struct vicinity *vicinity = &body->model->vicinity;
     for (int64_t i = 0; i < vicinity->n_cells; i++) {
@@ -169,8 +174,8 @@ static void visit(const struct body *body, const struct near_by *near_by, int64_
     }
 }
 
-/* Leaves only the pairs that are not joined by a longer way either. Such a way has 4 bonds at least: neighbours face to
- * face are bonded, or held. */
+/* Leaves only the pairs that are not joined by a longer way either. Such a way has 4 bonds at
+ * least: neighbours face to face are bonded, or held. */
 static void drop_joined(const struct body *body, struct near_by *near_by)
 {
     if (body->model->vicinity.hops < 4) return;
@@ -179,7 +184,8 @@ static void drop_joined(const struct body *body, struct near_by *near_by)
     for (int64_t i = 0; i < pairs->n; i++) {
         int32_t by[3];
         set_offset(body, pairs->list[i], by);
-        if (!is_joined_around(body, &near_by->search, pairs->list[i], by)) pairs->list[kept++] = pairs->list[i];
+        if (!is_joined_around(body, &near_by->search, pairs->list[i], by))
+            pairs->list[kept++] = pairs->list[i];
     }
     pairs->n = kept;
 }
@@ -196,7 +202,7 @@ static void mark_skin(const struct body *body, const struct near_by *near_by)
     }
 }
 
-bool pairs_reserve(struct pairs *pairs, int64_t capacity)
+bool vox_pairs_reserve(struct pairs *pairs, int64_t capacity)
 {
     if (pairs->list && capacity <= pairs->capacity) return true;
     free(pairs->list);
@@ -234,21 +240,22 @@ static bool allocate(const struct body *body, struct near_by *near_by)
            near_by->search.reached && near_by->search.queue;
 }
 
-enum vox_status near_by_shape(const struct body *body, struct near_by *near_by)
+enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_by)
 {
     if (!allocate(body, near_by)) return VOX_NO_MEMORY;
     join_all(body, near_by);
     mark_skin(body, near_by);
     visit(body, near_by, near_by->begin + 1, NULL);
-    for (int64_t slot = 0; slot < body->n_slots; slot++) near_by->begin[slot + 1] += near_by->begin[slot];
+    for (int64_t slot = 0; slot < body->n_slots; slot++)
+        near_by->begin[slot + 1] += near_by->begin[slot];
     near_by->pairs.n = near_by->begin[body->n_slots];
-    if (!pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
+    if (!vox_pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
     visit(body, near_by, near_by->begin, near_by->pairs.list);
     drop_joined(body, near_by);
     return VOX_OK;
 }
 
-void near_by_destroy(struct near_by *near_by)
+void vox_near_by_destroy(struct near_by *near_by)
 {
     free_bits(near_by);
     free(near_by->pairs.list);

@@ -1,17 +1,17 @@
-/* The outer surface of a body, for the fluid around it (section 7): faces that the outside reaches, and the corners at
- * which voxels that are joined face to face meet. */
+/* The outer surface of a body, for the fluid around it (section 7): faces that the outside reaches,
+ * and the corners at which voxels that are joined face to face meet. */
 #include <stdlib.h>
 
 #include "internal.h"
 
-/* ---- corners ---------------------------------------------------------------------------------------------- */
+/* ---- corners --------------------------------------------------------------------------------- */
 
-/* The eight cells around a lattice point as bits, the cell (x, y, z), each 0 or 1, at x + 2 y + 4 z: those that share a
- * face with one of `cells`. */
+/* The eight cells around a lattice point as bits, the cell (x, y, z), each 0 or 1, at x + 2 y + 4
+ * z: those that share a face with one of `cells`. */
 static unsigned beside(unsigned cells)
 {
-    return (cells & 0x55u) << 1 | (cells & 0xAAu) >> 1 | (cells & 0x33u) << 2 | (cells & 0xCCu) >> 2 |
-           (cells & 0x0Fu) << 4 | (cells & 0xF0u) >> 4;
+    return (cells & 0x55u) << 1 | (cells & 0xAAu) >> 1 | (cells & 0x33u) << 2 |
+           (cells & 0xCCu) >> 2 | (cells & 0x0Fu) << 4 | (cells & 0xF0u) >> 4;
 }
 
 /* Those of `cells` that are joined to one of them, face to face. */
@@ -65,12 +65,13 @@ static void join_corners(struct body *body)
             for (int64_t x = 0; x <= length[0]; x++) meet_at(body, x, y, z);
 }
 
-/* ---- faces ------------------------------------------------------------------------------------------------ */
+/* ---- faces ----------------------------------------------------------------------------------- */
 
 static bool at_border(const struct body *body, int64_t slot)
 {
     for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
-        if (slot_beside(body, slot, axis, false) < 0 || slot_beside(body, slot, axis, true) < 0) return true;
+        if (slot_beside(body, slot, axis, false) < 0 || slot_beside(body, slot, axis, true) < 0)
+            return true;
     return false;
 }
 
@@ -98,10 +99,12 @@ static struct facet facet_of(const struct body *body, int32_t slot, enum axis ax
     const int along = 1 << axis, first = 1 << (axis + 1) % 3, second = 1 << (axis + 2) % 3;
     const int from = upwards ? along : 0;
     if (upwards)
-        return (struct facet){
-            slot, {corners[from], corners[from + first], corners[from + first + second], corners[from + second]}};
-    return (struct facet){
-        slot, {corners[from], corners[from + second], corners[from + first + second], corners[from + first]}};
+        return (struct facet){slot,
+                              {corners[from], corners[from + first], corners[from + first + second],
+                               corners[from + second]}};
+    return (struct facet){slot,
+                          {corners[from], corners[from + second], corners[from + first + second],
+                           corners[from + first]}};
 }
 
 static void find_facets(struct body *body, const bool *outside)
@@ -112,7 +115,8 @@ static void find_facets(struct body *body, const bool *outside)
         for (int side = 0; side < 6; side++) {
             const enum axis axis = (enum axis)(side / 2);
             const int64_t next = slot_beside(body, slot, axis, side % 2);
-            if (next < 0 || outside[next]) surface->facets[surface->n_facets++] = facet_of(body, slot, axis, side % 2);
+            if (next < 0 || outside[next])
+                surface->facets[surface->n_facets++] = facet_of(body, slot, axis, side % 2);
         }
     }
 }
@@ -149,22 +153,23 @@ static enum vox_status place_facets(struct body *body)
     return enough ? VOX_OK : VOX_NO_MEMORY;
 }
 
-enum vox_status surface_shape(struct body *body)
+enum vox_status vox_surface_shape(struct body *body)
 {
     struct surface *surface = &body->surface;
     const size_t n = (size_t)body->census.n_voxels;
-    surface_destroy(surface);
+    vox_surface_destroy(surface);
     *surface = (struct surface){0};
     surface->corners_of = malloc((size_t)body->n_slots * sizeof *surface->corners_of);
     surface->share = malloc(8 * n * sizeof *surface->share);
     surface->corners = malloc(8 * n * sizeof *surface->corners);
     surface->facets = malloc(6 * n * sizeof *surface->facets);
-    if (!surface->corners_of || !surface->share || !surface->corners || !surface->facets) return VOX_NO_MEMORY;
+    if (!surface->corners_of || !surface->share || !surface->corners || !surface->facets)
+        return VOX_NO_MEMORY;
     join_corners(body);
     return place_facets(body);
 }
 
-void surface_destroy(struct surface *surface)
+void vox_surface_destroy(struct surface *surface)
 {
     free(surface->corners_of);
     free(surface->share);

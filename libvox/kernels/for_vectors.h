@@ -1,4 +1,5 @@
-/* What compilers have to be told so that loops without jumps stay so and become vector instructions. */
+/* What compilers have to be told so that loops without jumps stay so and become vector
+ * instructions. */
 #ifndef VOX_FOR_VECTORS_H
 #define VOX_FOR_VECTORS_H
 

@@ -1,12 +1,14 @@
 /* How a voxel moves and how its size follows the actuation (sections 4, 7 and 8). */
 #include "internal.h"
 
-static const double SETTLING = 0.5; /* share of the time until the start in which a size takes to the rounded edge */
+/* Share of the time until the start in which a size takes to the rounded edge. */
+static const double SETTLING = 0.5;
 
-struct actuation actuation_at(const vox_model *model, double time)
+struct actuation vox_actuation_at(const vox_model *model, double time)
 {
     const struct vox_settings *s = &model->settings;
-    struct actuation a = {.edge = s->voxel_size, .rest = model->rest_scale, .cycles = time / s->period};
+    struct actuation a = {
+        .edge = s->voxel_size, .rest = model->rest_scale, .cycles = time / s->period};
     if (time < s->start_time) {
         a.rest = 1.0 + fmin(1.0, time / (SETTLING * s->start_time)) * (model->rest_scale - 1.0);
         return a;
@@ -20,7 +22,8 @@ struct actuation actuation_at(const vox_model *model, double time)
 static double size_of(const struct actuation *a, double amplitude, double phase, double last)
 {
     if (a->gain == 0.0 || amplitude == 0.0) return a->edge * a->rest;
-    const double size = a->edge * (a->rest + a->gain * amplitude * sin(TWO_PI * (a->cycles + phase)));
+    const double size =
+        a->edge * (a->rest + a->gain * amplitude * sin(TWO_PI * (a->cycles + phase)));
     if (size < SMALLEST_SCALE * a->edge && size < last) return last;
     if (size > LARGEST_SCALE * a->edge && size > last) return last;
     return size;
@@ -30,7 +33,8 @@ static struct quat turned(struct quat q, struct vec spin_rate, double dt)
 {
     const struct quat rate = quat_mul((struct quat){0.0, spin_rate.x, spin_rate.y, spin_rate.z}, q);
     const double half = 0.5 * dt;
-    const struct quat r = {q.w + half * rate.w, q.x + half * rate.x, q.y + half * rate.y, q.z + half * rate.z};
+    const struct quat r = {q.w + half * rate.w, q.x + half * rate.x, q.y + half * rate.y,
+                           q.z + half * rate.z};
     const double norm = 1.0 / sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
     if (r.w * norm >= 1.0) return (struct quat){1.0, 0.0, 0.0, 0.0};
     return (struct quat){r.w * norm, r.x * norm, r.y * norm, r.z * norm};
@@ -55,10 +59,12 @@ static void hold_coordinate(double *position, double *momentum, double start)
     *momentum = 0.0;
 }
 
-/* A voxel keeps the coordinates that it is not free to change, and its orientation if it may turn about no axis. */
+/* A voxel keeps the coordinates that it is not free to change, and its orientation if it may turn
+ * about no axis. */
 static void hold(const struct voxels *v, int64_t i)
 {
-    const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z, fixed = v->fixed[i];
+    const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z,
+                   fixed = v->fixed[i];
     if (fixed & VOX_FIX_X) hold_coordinate(&v->position.x[i], &v->momentum.x[i], v->start.x[i]);
     if (fixed & VOX_FIX_Y) hold_coordinate(&v->position.y[i], &v->momentum.y[i], v->start.y[i]);
     if (fixed & VOX_FIX_Z) hold_coordinate(&v->position.z[i], &v->momentum.z[i], v->start.z[i]);
@@ -67,13 +73,11 @@ static void hold(const struct voxels *v, int64_t i)
     vec_put(v->spin, i, (struct vec){0.0, 0.0, 0.0});
 }
 
-void voxel_load(struct body *body, int64_t slot)
+void vox_voxel_load(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
-    const struct vec drag = vec_scale(-v->drag_rate[slot], vec_at(v->momentum, slot));
-    struct vec force = vec_add(drag, vec_at(v->force, slot));
-    force.z += v->weight[slot];
-    vec_put(v->force, slot, force);
+    const struct vec force = vec_at(v->force, slot), momentum = vec_at(v->momentum, slot);
+    vec_put(v->force, slot, loaded(force, v->drag_rate[slot], momentum, v->weight[slot]));
 }
 
 static double larger(double a, double b)
@@ -86,34 +90,37 @@ static bool voxel_move(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
     const double dt = body->census.dt, too_far = body->model->too_far;
-    vec_put(v->momentum, slot, vec_add(vec_at(v->momentum, slot), vec_scale(dt, vec_at(v->force, slot))));
-    vec_put(v->position, slot, vec_add(vec_at(v->position, slot), vec_scale(dt, velocity_of(v, slot))));
+    vec_put(v->momentum, slot,
+            vec_add(vec_at(v->momentum, slot), vec_scale(dt, vec_at(v->force, slot))));
+    vec_put(v->position, slot,
+            vec_add(vec_at(v->position, slot), vec_scale(dt, velocity_of(v, slot))));
     turn(v, slot, dt);
     if (v->fixed[slot]) hold(v, slot);
     const struct vec way = vec_sub(vec_at(v->position, slot), vec_at(v->start, slot));
     const struct vec spin = vec_at(v->spin, slot), velocity = velocity_of(v, slot);
     body->top_speed = larger(body->top_speed, sqrt(vec_dot(velocity, velocity)));
     body->farthest = larger(body->farthest, sqrt(vec_dot(way, way)));
-    return vec_dot(way, way) <= too_far * too_far && isfinite(vec_dot(spin, spin) * v->turnability[slot]);
+    return vec_dot(way, way) <= too_far * too_far &&
+           isfinite(vec_dot(spin, spin) * v->turnability[slot]);
 }
 
 /* The floor comes last, since friction looks at all other forces. */
-bool voxel_advance(struct body *body, int64_t slot)
+bool vox_voxel_advance(struct body *body, int64_t slot)
 {
-    voxel_load(body, slot);
-    if (body->model->settings.floor) floor_apply(body, slot);
+    vox_voxel_load(body, slot);
+    if (body->model->settings.floor) vox_floor_apply(body, slot);
     return voxel_move(body, slot);
 }
 
-bool scalar_voxels_advance(struct body *body)
+bool vox_scalar_voxels_advance(struct body *body)
 {
     const struct voxels *v = &body->voxels;
-    const struct actuation actuation = actuation_at(body->model, body->time);
+    const struct actuation actuation = vox_actuation_at(body->model, body->time);
     bool fine = true;
     body->top_speed = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
-        if (v->fixed[slot] != VOX_FIX_ALL) fine &= voxel_advance(body, slot);
+        if (v->fixed[slot] != VOX_FIX_ALL) fine &= vox_voxel_advance(body, slot);
         v->size[slot] = size_of(&actuation, v->amplitude[slot], v->phase[slot], v->size[slot]);
         vec_put(v->force, slot, (struct vec){0.0, 0.0, 0.0});
         vec_put(v->torque, slot, (struct vec){0.0, 0.0, 0.0});

@@ -1,25 +1,21 @@
 /* Self collision: which voxels may touch (section 10).
  *
- * Lists are sorted by their first voxel, then by the second, so that forces are added in an order that does not depend
- * on how a list was found. */
+ * Lists are sorted by their first voxel, then by the second, so that forces are added in an order
+ * that does not depend on how a list was found. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "internal.h"
 
-static const double CROWDING = 2.0; /* how much denser than the lattice voxels may lie while all contacts are listed */
+/* How much denser than the lattice voxels may lie while all contacts are listed. */
+static const double CROWDING = 2.0;
 
-static int64_t least(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
+/* ---- distances ------------------------------------------------------------------------------- */
 
-/* ---- distances -------------------------------------------------------------------------------------------- */
-
-/* How far the fastest voxel may move before the list is made anew, m. */
+/* How far the fastest voxel may move before the list is made anew, in lattice edges. */
 static double leeway(const struct vox_settings *s)
 {
-    return (s->collision_horizon - 1.0) / 2.0 * s->voxel_size;
+    return (s->collision_horizon - 1.0) / 2.0;
 }
 
 /* The original engine lists nothing beyond, m. */
@@ -29,21 +25,23 @@ static double engine_reach(const struct vox_settings *s)
 }
 
 /* A complete list has all that can touch before the next one. */
-double contacts_reach(const vox_model *model)
+double vox_contacts_reach(const vox_model *model)
 {
     const struct vox_settings *s = &model->settings;
-    if (s->complete_contacts) return s->collision_envelope * model->largest_size + 2.0 * leeway(s);
+    if (s->complete_contacts)
+        return s->collision_envelope * model->largest_size + 2.0 * (leeway(s) * s->voxel_size);
     return fmin(engine_reach(s), s->collision_horizon * model->largest_size);
 }
 
-/* Most pairs that are listed for each voxel: half of the voxels of a sphere, a pair being listed once. */
+/* Most pairs that are listed for each voxel: half of the voxels of a sphere, a pair being listed
+ * once. */
 static int64_t pairs_per_voxel(const vox_model *model)
 {
-    const double radius = contacts_reach(model) / model->settings.voxel_size + 1.0;
+    const double radius = vox_contacts_reach(model) / model->settings.voxel_size + 1.0;
     return (int64_t)(CROWDING * 0.5 * 4.19 * radius * radius * radius);
 }
 
-/* ---- shape ------------------------------------------------------------------------------------------------ */
+/* ---- shape ----------------------------------------------------------------------------------- */
 
 static void place_skin(struct body *body)
 {
@@ -60,13 +58,14 @@ static enum vox_status make_room(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
     const int64_t n = contacts->n_skin;
-    contacts->most = least(n * (n - 1) / 2, pairs_per_voxel(body->model) * n);
-    if (!pairs_reserve(&contacts->now, contacts->most)) return VOX_NO_MEMORY;
-    if (!pairs_reserve(&contacts->first, contacts->near_by.pairs.n)) return VOX_NO_MEMORY;
-    return grid_shape(&contacts->grid, n);
+    const int64_t all = n * (n - 1) / 2, most = pairs_per_voxel(body->model) * n;
+    contacts->most = all < most ? all : most;
+    if (!vox_pairs_reserve(&contacts->now, contacts->most)) return VOX_NO_MEMORY;
+    if (!vox_pairs_reserve(&contacts->first, contacts->near_by.pairs.n)) return VOX_NO_MEMORY;
+    return vox_grid_shape(&contacts->grid, n);
 }
 
-enum vox_status contacts_shape(struct body *body)
+enum vox_status vox_contacts_shape(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
     free(contacts->skin);
@@ -74,44 +73,45 @@ enum vox_status contacts_shape(struct body *body)
     contacts->skin = malloc((size_t)body->census.n_voxels * sizeof *contacts->skin);
     if (!contacts->skin) return VOX_NO_MEMORY;
     place_skin(body);
-    const enum vox_status status = near_by_shape(body, &contacts->near_by);
+    const enum vox_status status = vox_near_by_shape(body, &contacts->near_by);
     return status == VOX_OK ? make_room(body) : status;
 }
 
-void contacts_rest(struct body *body)
+void vox_contacts_rest(struct body *body)
 {
     body->contacts.travelled = 0.0;
 }
 
-void contacts_destroy(struct contacts *contacts)
+void vox_contacts_destroy(struct contacts *contacts)
 {
     free(contacts->skin);
     free(contacts->first.list);
     free(contacts->now.list);
-    near_by_destroy(&contacts->near_by);
-    grid_destroy(&contacts->grid);
+    vox_near_by_destroy(&contacts->near_by);
+    vox_grid_destroy(&contacts->grid);
 }
 
-/* ---- making a list ---------------------------------------------------------------------------------------- */
+/* ---- making a list --------------------------------------------------------------------------- */
 
 /* When a pair is close enough to be listed, m. */
 struct limits {
-    double reach;       /* of any list */
-    double engine;      /* of the original engine's, or infinite */
-    double horizon;     /* of the original engine's, in sizes of the first voxel; or infinite */
+    double reach;   /* of any list */
+    double engine;  /* of the original engine's, or infinite */
+    double horizon; /* of the original engine's, in sizes of the first voxel; or infinite */
 };
 
 static struct limits limits_of(const vox_model *model)
 {
     const struct vox_settings *s = &model->settings;
-    if (s->complete_contacts) return (struct limits){contacts_reach(model), HUGE_VAL, HUGE_VAL};
-    return (struct limits){contacts_reach(model), engine_reach(s), s->collision_horizon};
+    if (s->complete_contacts) return (struct limits){vox_contacts_reach(model), HUGE_VAL, HUGE_VAL};
+    return (struct limits){vox_contacts_reach(model), engine_reach(s), s->collision_horizon};
 }
 
 /* Voxels exactly at the original engine's reach are out. */
 IN_LOOP bool is_due(const struct voxels *v, struct pair pair, const struct limits *limits)
 {
-    const struct vec apart = vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
+    const struct vec apart =
+        vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
     const double distance2 = vec_dot(apart, apart);
     if (distance2 >= limits->reach * limits->reach) return false;
     const double distance = sqrt(distance2);
@@ -143,7 +143,9 @@ static bool list_from_near_by(struct body *body)
     const struct pairs *pairs = &body->contacts.near_by.pairs;
     const struct limits limits = limits_of(body->model);
     for (int64_t i = 0; i < pairs->n; i++)
-        if (is_due(&body->voxels, pairs->list[i], &limits) && !list_one(&body->contacts, pairs->list[i])) return false;
+        if (is_due(&body->voxels, pairs->list[i], &limits) &&
+            !list_one(&body->contacts, pairs->list[i]))
+            return false;
     return true;
 }
 
@@ -151,13 +153,15 @@ static bool list_from_grid(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
     const struct limits limits = limits_of(body->model);
-    grid_fill(&contacts->grid, body, limits.reach);
+    vox_grid_fill(&contacts->grid, body, limits.reach);
     for (int64_t i = 0; i < contacts->n_skin; i++) {
         const int32_t first = contacts->skin[i];
-        const int64_t n = grid_find(&contacts->grid, body, first);
+        const int64_t n = vox_grid_find(&contacts->grid, body, first);
         for (int64_t k = 0; k < n; k++) {
             const struct pair pair = {first, contacts->grid.found[k]};
-            if (!is_due(&body->voxels, pair, &limits) || !near_by_may_collide(body, &contacts->near_by, pair)) continue;
+            if (!is_due(&body->voxels, pair, &limits) ||
+                !vox_near_by_may_collide(body, &contacts->near_by, pair))
+                continue;
             if (!list_one(contacts, pair)) return false;
         }
     }
@@ -190,12 +194,12 @@ static bool list_at_rest(struct body *body)
     return true;
 }
 
-bool contacts_refresh(struct body *body, bool first_step)
+bool vox_contacts_refresh(struct body *body, bool first_step)
 {
     const struct vox_settings *settings = &body->model->settings;
     struct contacts *contacts = &body->contacts;
     contacts->travelled += body->top_speed * body->census.dt / settings->voxel_size;
-    if (!first_step && contacts->travelled <= (settings->collision_horizon - 1.0) / 2.0) return true;
+    if (!first_step && contacts->travelled <= leeway(settings)) return true;
     contacts->travelled = 0.0;
     return first_step ? list_at_rest(body) : list_contacts(body);
 }

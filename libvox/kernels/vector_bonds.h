@@ -1,18 +1,6 @@
 /* The bond law (sections 5 and 6) of the fast kernel: see vector_kernel.h, which includes this. */
 
-/* ---- vectors that are seen along an axis ------------------------------------------------------------------ */
-
-IN_LOOP struct vec along(enum axis axis, struct vec v)
-{
-    if (axis == AXIS_X) return v;
-    return axis == AXIS_Y ? (struct vec){v.y, -v.x, v.z} : (struct vec){v.z, v.y, -v.x};
-}
-
-IN_LOOP struct vec across(enum axis axis, struct vec v)
-{
-    if (axis == AXIS_X) return v;
-    return axis == AXIS_Y ? (struct vec){-v.y, v.x, v.z} : (struct vec){-v.z, v.y, v.x};
-}
+/* ---- rotations ------------------------------------------------------------------------------- */
 
 /* A rotation as a matrix: cheaper than its quaternion where it turns several vectors. */
 struct matrix {
@@ -22,7 +10,8 @@ struct matrix {
 IN_LOOP struct matrix matrix_of(struct quat q)
 {
     const double ww = q.w * q.w, xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
-    const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
+    const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z, xy = q.x * q.y, xz = q.x * q.z,
+                 yz = q.y * q.z;
     const double middle = ww - xx, apart = yy - zz;
     return (struct matrix){
         {(ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)},
@@ -45,18 +34,20 @@ IN_LOOP struct vec turn_back(const struct matrix *m, struct vec v)
     };
 }
 
-/* ---- how bonds are deformed ------------------------------------------------------------------------------- */
+/* ---- how bonds are deformed ------------------------------------------------------------------ */
 
 /* What the bonds of a tile look like, each in its own frame. */
 struct sight {
     lanes stretch[3];  /* m; before the frame is known, the upper end seen from the lower */
     lanes relative[4]; /* quaternion, of the upper end against the frame */
-    lanes onto[3];     /* w, y, z of the rotation that takes the bond onto x; only where a bond is in the large frame */
-    lanes rest;        /* m */
-    lanes small;       /* 1 or 0, the frame of this step */
+    lanes onto[3]; /* w, y, z of the rotation that takes the bond onto x; only where a bond is in
+                      the large frame */
+    lanes rest;    /* m */
+    lanes small;   /* 1 or 0, the frame of this step */
 } IN_LINES;
 
-/* Orientations of the voxels in a tile as matrices, row after row: the lower ends' of its bonds along all axes. */
+/* Orientations of the voxels in a tile as matrices, row after row: the lower ends' of its bonds
+ * along all axes. */
 struct frames {
     lanes entries[9];
 } IN_LINES;
@@ -88,9 +79,11 @@ IN_LOOP struct matrix frame_at(const struct frames *frames, int64_t i)
     };
 }
 
-/* Looks at the bonds from their lower ends and chooses their frames. How many are in the large one? */
-IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axis axis, int64_t base,
-                     const struct frames *restrict frames, struct sight *restrict sight)
+/* Looks at the bonds from their lower ends and chooses their frames. How many are in the large
+ * one? */
+IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axis axis,
+                     int64_t base, const struct frames *restrict frames,
+                     struct sight *restrict sight)
 {
     const int64_t step = bonds->step;
     const double *restrict px = v->position.x + base, *restrict py = v->position.y + base;
@@ -104,16 +97,18 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         const struct quat upper = {qw[i + step], qx[i + step], qy[i + step], qz[i + step]};
         const struct vec apart = {px[i + step] - px[i], py[i + step] - py[i], pz[i + step] - pz[i]};
         const struct matrix frame = frame_at(frames, i);
-        const struct vec u = along(axis, turn_back(&frame, apart));
+        const struct vec u = axis_to_x(axis, turn_back(&frame, apart));
         const struct quat turned = quat_mul(quat_conj(lower), upper);
-        const struct vec turned_axis = along(axis, (struct vec){turned.x, turned.y, turned.z});
+        const struct vec turned_axis = axis_to_x(axis, (struct vec){turned.x, turned.y, turned.z});
         const double rest = 0.5 * (size[i] + size[i + step]), aside = fabs(u.y) + fabs(u.z);
-        /* turn and extension against their limits without dividing; backwards, a turn is negative */
+        /* turn and extension against their limits without dividing; backwards, a turn is
+         * negative */
         const double was = was_small[i]; /* 1 or 0, so the limits are exact enough */
         const double turn = SMALL_TURN + was * (LARGE_TURN - SMALL_TURN);
         const double extension = SMALL_EXTENSION + was * (LARGE_EXTENSION - SMALL_EXTENSION);
         const double cosine = SMALL_COSINE + was * (LARGE_COSINE - SMALL_COSINE);
-        const bool is = (turned.w > cosine) & ((aside <= turn * u.x) | (u.x < 0.0)) & (u.x <= extension * rest);
+        const bool is =
+            (turned.w > cosine) & ((aside <= turn * u.x) | (u.x < 0.0)) & (u.x <= extension * rest);
         sight->stretch[0][i] = u.x;
         sight->stretch[1][i] = u.y;
         sight->stretch[2][i] = u.z;
@@ -139,7 +134,8 @@ IN_LOOP struct quat onto_x(struct vec u, double length)
     return (struct quat){choose(slight, 1.0 - 0.5 * (y * y + z * z), half_cosine), 0.0, y, z};
 }
 
-/* Straightens the bonds that are in the large frame. How many are turned so far that a chord does not do for the arc? */
+/* Straightens the bonds that are in the large frame. How many are turned so far that a chord does
+ * not do for the arc? */
 IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict sight)
 {
     int64_t far = 0;
@@ -150,7 +146,8 @@ IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict 
         const bool small = sight->small[i] != 0.0;
         const double length = sqrt(vec_dot(u, u));
         const struct quat large = onto_x(u, length);
-        const double w = choose(small, 1.0, large.w), y = choose(small, 0.0, large.y), z = choose(small, 0.0, large.z);
+        const double w = choose(small, 1.0, large.w), y = choose(small, 0.0, large.y),
+                     z = choose(small, 0.0, large.z);
         const double turned = w * r.w - y * r.y - z * r.z;
         sight->onto[0][i] = w;
         sight->onto[1][i] = y;
@@ -162,13 +159,15 @@ IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict 
         sight->stretch[0][i] = choose(small, u.x, length);
         sight->stretch[1][i] = choose(small, u.y, 0.0);
         sight->stretch[2][i] = choose(small, u.z, 0.0);
-        far += (there[i] != 0.0) & ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
+        far += (there[i] != 0.0) &
+               ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
     }
     return far;
 }
 
-/* Length of a rotation vector over that of its quaternion's vector part, as in bond.c: within 5.6 degrees the chord counts
- * as the arc, and a cosine beyond 1 or -1, of a quaternion that is not quite unit, as no rotation. */
+/* Length of a rotation vector over that of its quaternion's vector part, as in bond.c: within 5.6
+ * degrees the chord counts as the arc, and a cosine beyond 1 or -1, of a quaternion that is not
+ * quite unit, as no rotation. */
 IN_LOOP double arc_ratio(double cosine, bool far)
 {
     const double chord = choose(cosine >= 1.0, 0.0, 2.0 * inverse_root_of_half(1.0 - cosine));
@@ -178,7 +177,7 @@ IN_LOOP double arc_ratio(double cosine, bool far)
     return choose(cosine > COSINE_OF_SMALL_ROTATION, chord, arc);
 }
 
-/* ---- what bonds do ---------------------------------------------------------------------------------------- */
+/* ---- what bonds do --------------------------------------------------------------------------- */
 
 /* What the bonds of a tile do to their ends, in the world. */
 struct loads {
@@ -203,13 +202,13 @@ IN_LOOP void put(lanes to[3], int64_t i, bool there, struct vec v)
 /* Stiffnesses and dampers of the bond in a slot. */
 IN_LOOP struct coupling coupling_in(const struct bonds *bonds, int64_t i)
 {
-    double *const *c = bonds->coefficients;
-    return (struct coupling){
-        c[0][i], c[1][i], c[2][i], c[3][i], c[4][i],
-        {c[5][i], c[6][i], c[7][i], c[8][i], c[9][i], c[10][i]},
-        {c[11][i], c[12][i], c[13][i], c[14][i], c[15][i], c[16][i]},
-        0.0, 0.0, 0.0,
+    const struct coupling_arrays *arrays = &bonds->coupling;
+#define LOAD(field) .field = arrays->field[i],
+    return (struct coupling)
+    {
+        BOND_LAW(LOAD)
     };
+#undef LOAD
 }
 
 /* Stretch, and turns of both ends, or how fast they change. */
@@ -228,7 +227,8 @@ IN_LOOP struct vec force_of(double stretch, double shear, double bend_shear, con
 }
 
 /* Moment on the end that turned by `own`, likewise; it counts twice. */
-IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const struct change *c, struct vec own)
+IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const struct change *c,
+                             struct vec own)
 {
     return (struct vec){
         twist,
@@ -237,23 +237,26 @@ IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const
     };
 }
 
-/* The orientation of a frame that a bond straightens: lower * (w, 0, -y, -z), the latter seen along an axis. */
+/* The orientation of a frame that a bond straightens: lower * (w, 0, -y, -z), the latter seen along
+ * an axis. */
 IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, double y, double z)
 {
-    const struct vec v = along(axis, (struct vec){lower.x, lower.y, lower.z});
+    const struct vec v = axis_to_x(axis, (struct vec){lower.x, lower.y, lower.z});
     const struct vec turned = {
         w * v.x + (v.z * y - v.y * z),
         w * v.y + (v.x * z - lower.w * y),
         w * v.z - (v.x * y + lower.w * z),
     };
-    const struct vec back = across(axis, turned);
+    const struct vec back = x_to_axis(axis, turned);
     return (struct quat){lower.w * w + (v.y * y + v.z * z), back.x, back.y, back.z};
 }
 
-/* Computes the forces and moments of a tile's bonds, and keeps how they are deformed. How many are strained too far?
- * The constants say whether all bonds have one coupling, whether some are in the large frame, and turned far. */
-IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const struct coupling *coupling,
-                     enum axis axis, int64_t base, double per_second, double most, bool large, bool far,
+/* Computes the forces and moments of a tile's bonds, and keeps how they are deformed. How many are
+ * strained too far? The constants say whether all bonds have one coupling, whether some are in the
+ * large frame, and turned far. */
+IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
+                     const struct coupling *coupling, enum axis axis, int64_t base,
+                     double per_second, double most, bool large, bool far,
                      const struct frames *restrict frames, const struct sight *restrict sight,
                      struct loads *restrict loads)
 {
@@ -270,7 +273,8 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const st
     NO_LANE_DEPENDS_ON_ANOTHER
     for (int64_t i = 0; i < TILE; i++) {
         const struct coupling c = coupling ? *coupling : coupling_in(bonds, base + i);
-        const struct vec p = {sight->stretch[0][i] - sight->rest[i], sight->stretch[1][i], sight->stretch[2][i]};
+        const struct vec p = {sight->stretch[0][i] - sight->rest[i], sight->stretch[1][i],
+                              sight->stretch[2][i]};
         const struct quat r = {sight->relative[0][i], sight->relative[1][i], sight->relative[2][i],
                                sight->relative[3][i]};
         const struct quat lower = {qw[i], qx[i], qy[i], qz[i]};
@@ -306,25 +310,29 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds, const st
 
         const struct damper *lower_end = &c.lower, *upper_end = coupling ? &c.lower : &c.upper;
         const struct vec spring = force_of(c.stretch, c.shear, c.bend_shear, &now);
-        const struct vec brake = force_of(lower_end->stretch, lower_end->shear, lower_end->bend_shear, &speed);
+        const struct vec brake =
+            force_of(lower_end->stretch, lower_end->shear, lower_end->bend_shear, &speed);
         const double twist = c.twist * b.x, twisting = speed.b.x;
         const struct vec moment_lower =
             vec_add(moment_of(-twist, c.bend_shear, c.bend, &now, a),
-                    moment_of(-lower_end->twist * twisting, lower_end->moment_shear, lower_end->bend, &speed, speed.a));
+                    moment_of(-lower_end->twist * twisting, lower_end->moment_shear,
+                              lower_end->bend, &speed, speed.a));
         const struct vec moment_upper =
             vec_add(moment_of(twist, c.bend_shear, c.bend, &now, b),
-                    moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend, &speed, speed.b));
+                    moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend,
+                              &speed, speed.b));
         const struct matrix m = large ? matrix_of(frame) : frame_at(frames, i);
         const bool there = is_there[i] != 0.0;
-        const struct vec force_lower = turn(&m, across(axis, vec_add(spring, brake)));
+        const struct vec force_lower = turn(&m, x_to_axis(axis, vec_add(spring, brake)));
         add(loads->force_lower, i, there, force_lower);
-        add(loads->moment_lower, i, there, turn(&m, across(axis, moment_lower)));
-        put(loads->moment_upper, i, there, turn(&m, across(axis, moment_upper)));
+        add(loads->moment_lower, i, there, turn(&m, x_to_axis(axis, moment_lower)));
+        put(loads->moment_upper, i, there, turn(&m, x_to_axis(axis, moment_upper)));
         if (coupling) {
             put(loads->force_upper, i, there, force_lower);
         } else {
-            const struct vec own = force_of(upper_end->stretch, upper_end->shear, upper_end->bend_shear, &speed);
-            put(loads->force_upper, i, there, turn(&m, across(axis, vec_add(spring, own))));
+            const struct vec own =
+                force_of(upper_end->stretch, upper_end->shear, upper_end->bend_shear, &speed);
+            put(loads->force_upper, i, there, turn(&m, x_to_axis(axis, vec_add(spring, own))));
         }
         overstrained += there & !(fabs(p.x) <= most);
     }
@@ -341,10 +349,13 @@ IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
     for (int64_t i = 0; i < TILE; i++) to[i] -= from[i];
 }
 
-/* Gives what bonds do to their lower or upper ends to the voxels there; a force acts on both, in opposite directions. */
-IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3], const lanes moment[3], bool upper)
+/* Gives what bonds do to their lower or upper ends to the voxels there; a force acts on both, in
+ * opposite directions. */
+IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3],
+                    const lanes moment[3], bool upper)
 {
-    double *const forces[] = {v->force.x, v->force.y, v->force.z}, *const torques[] = {v->torque.x, v->torque.y, v->torque.z};
+    double *const forces[] = {v->force.x, v->force.y, v->force.z};
+    double *const torques[] = {v->torque.x, v->torque.y, v->torque.z};
     for (int i = 0; i < 3; i++) {
         if (upper)
             subtract_lanes(forces[i] + base, force[i]);
@@ -354,8 +365,9 @@ IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3], 
     }
 }
 
-IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis, int64_t base,
-                           double per_second, double most, const struct frames *frames, struct loads *loads)
+IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis,
+                           int64_t base, double per_second, double most,
+                           const struct frames *frames, struct loads *loads)
 {
     if (!body->bonds[axis].tile_used[base / TILE]) return true;
     const struct voxels *v = &body->voxels;
@@ -363,17 +375,22 @@ IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupl
     struct sight sight;
     int64_t overstrained;
     if (look(v, b, axis, base, frames, &sight) == 0)
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, false, false, frames, &sight, loads);
+        overstrained =
+            pull(v, b, coupling, axis, base, per_second, most, false, false, frames, &sight, loads);
     else if (straighten(b->there + base, &sight) == 0)
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, loads);
+        overstrained =
+            pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, loads);
     else
-        overstrained = pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, loads);
+        overstrained =
+            pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, loads);
     unload(v, base + b->step, loads->force_upper, loads->moment_upper, true);
     return overstrained == 0;
 }
 
-/* Axis after axis in one tile, whose voxels stay in the cache; whether there is one coupling is a constant. */
-IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupling, double per_second)
+/* Axis after axis in one tile, whose voxels stay in the cache; whether there is one coupling is a
+ * constant. */
+IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupling,
+                           double per_second)
 {
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;

@@ -14,5 +14,5 @@ static bool avx2_usable(void)
     return __builtin_cpu_supports("avx2");
 }
 
-const struct kernel avx2_kernel = VECTOR_KERNEL("avx2", avx2_usable);
+const struct kernel vox_avx2_kernel = VECTOR_KERNEL("avx2", avx2_usable);
 #endif

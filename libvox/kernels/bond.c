@@ -1,39 +1,22 @@
-/* The bond law: a beam between two voxels, in one of two frames, with a damper (sections 5 and 6). */
+/* The bond law: a beam between two voxels, in one of two frames, with a damper (sections 5 and
+ * 6). */
+#include "axes.h"
 #include "internal.h"
 
-/* A vector seen in axes of which the bond's own is the first, and back. */
-static struct vec axis_to_x(enum axis axis, struct vec v)
-{
-    switch (axis) {
-    case AXIS_X: return v;
-    case AXIS_Y: return (struct vec){v.y, -v.x, v.z};
-    case AXIS_Z: break;
-    }
-    return (struct vec){v.z, v.y, -v.x};
-}
-
-static struct vec x_to_axis(enum axis axis, struct vec v)
-{
-    switch (axis) {
-    case AXIS_X: return v;
-    case AXIS_Y: return (struct vec){-v.y, v.x, v.z};
-    case AXIS_Z: break;
-    }
-    return (struct vec){-v.z, v.y, v.x};
-}
-
-/* Rotation vector of a rotation. The engine's formulas: within 5.6 degrees the chord counts as the arc. */
+/* Rotation vector of a rotation. The engine's formulas: within 5.6 degrees the chord counts as the
+ * arc. */
 static struct vec rotation_vector(struct quat q)
 {
     const double w = q.w > 1.0 ? 1.0 : q.w;
     const double sine2 = 1.0 - w * w;
     if (sine2 <= 0.0) return (struct vec){0.0, 0.0, 0.0}; /* a NaN goes on, to be found */
-    const double k = w > COSINE_OF_SMALL_ROTATION ? 2.0 * sqrt((2.0 - 2.0 * w) / sine2) : 2.0 * acos(w) / sqrt(sine2);
+    const double k = w > COSINE_OF_SMALL_ROTATION ? 2.0 * sqrt((2.0 - 2.0 * w) / sine2)
+                                                  : 2.0 * acos(w) / sqrt(sine2);
     return vec_scale(k, (struct vec){q.x, q.y, q.z});
 }
 
-/* The rotation that takes a direction onto +x. The small-angle form is not quite a unit quaternion, and a bond turned
- * inside out, close to -x, takes it too: both as in the engine. */
+/* The rotation that takes a direction onto +x. The small-angle form is not quite a unit quaternion,
+ * and a bond turned inside out, close to -x, takes it too: both as in the engine. */
 static struct quat rotation_onto_x(struct vec u, double length)
 {
     if (fabs(u.y / u.x) < SLOPE_OF_SMALL_TURN && fabs(u.z / u.x) < SLOPE_OF_SMALL_TURN) {
@@ -49,16 +32,19 @@ static struct quat rotation_onto_x(struct vec u, double length)
 static bool next_frame_is_small(bool small, double turn_cosine, struct vec u, double rest)
 {
     const double turn = (fabs(u.y) + fabs(u.z)) / u.x, extension = u.x / rest;
-    if (small) return !(turn_cosine <= LARGE_COSINE || turn > LARGE_TURN || extension > LARGE_EXTENSION);
+    if (small)
+        return !(turn_cosine <= LARGE_COSINE || turn > LARGE_TURN || extension > LARGE_EXTENSION);
     return turn_cosine > SMALL_COSINE && turn < SMALL_TURN && extension < SMALL_EXTENSION;
 }
 
-/* How a bond is deformed, or how fast: of its upper end against its lower, and the rotation of both ends. */
+/* How a bond is deformed, or how fast: of its upper end against its lower, and the rotation of both
+ * ends. */
 struct deformation {
     struct vec stretch, turn_lower, turn_upper;
 };
 
-/* Force on the lower end (the upper gets its opposite) and moments of both ends, in the bond's frame. */
+/* Force on the lower end (the upper gets its opposite) and moments of both ends, in the bond's
+ * frame. */
 struct wrench {
     struct vec force_lower, force_upper, moment_lower, moment_upper;
 };
@@ -81,7 +67,8 @@ IN_LOOP void keep(const struct bonds *bonds, int64_t slot, struct deformation no
     vec_put(bonds->upper, slot, now.turn_upper);
 }
 
-IN_LOOP struct deformation rate_of(struct deformation now, struct deformation last, double per_second)
+IN_LOOP struct deformation rate_of(struct deformation now, struct deformation last,
+                                   double per_second)
 {
     return (struct deformation){
         vec_scale(per_second, vec_sub(now.stretch, last.stretch)),
@@ -98,12 +85,15 @@ IN_LOOP struct wrench spring(const struct coupling *c, struct deformation d)
         c->shear * p.y - c->bend_shear * (a.z + b.z),
         c->shear * p.z + c->bend_shear * (a.y + b.y),
     };
-    const double twist = c->twist * (a.x - b.x), lift = c->bend_shear * p.z, side = c->bend_shear * p.y;
+    const double twist = c->twist * (a.x - b.x), lift = c->bend_shear * p.z,
+                 side = c->bend_shear * p.y;
     return (struct wrench){
         .force_lower = force,
         .force_upper = vec_scale(-1.0, force),
-        .moment_lower = {twist, lift + c->bend * (2.0 * a.y + b.y), -side + c->bend * (2.0 * a.z + b.z)},
-        .moment_upper = {-twist, lift + c->bend * (a.y + 2.0 * b.y), -side + c->bend * (a.z + 2.0 * b.z)},
+        .moment_lower = {twist, lift + c->bend * (2.0 * a.y + b.y),
+                         -side + c->bend * (2.0 * a.z + b.z)},
+        .moment_upper = {-twist, lift + c->bend * (a.y + 2.0 * b.y),
+                         -side + c->bend * (a.z + 2.0 * b.z)},
     };
 }
 
@@ -119,7 +109,8 @@ static struct vec damping_force(const struct damper *c, struct deformation rate)
 }
 
 /* Moment on the end that turns at `own` while the other turns at `other`. */
-static struct vec damping_moment(const struct damper *c, struct vec v, struct vec own, struct vec other)
+static struct vec damping_moment(const struct damper *c, struct vec v, struct vec own,
+                                 struct vec other)
 {
     return (struct vec){
         c->twist * (own.x - other.x),
@@ -138,11 +129,13 @@ IN_LOOP void add_damping(struct wrench *wrench, const struct coupling *c, struct
 }
 
 /* Adds one end's force and moment, given in the bond's frame, to a voxel. */
-IN_LOOP void load(const struct voxels *v, int64_t slot, enum axis axis, struct quat frame, struct vec force,
-                  struct vec moment)
+IN_LOOP void load(const struct voxels *v, int64_t slot, enum axis axis, struct quat frame,
+                  struct vec force, struct vec moment)
 {
-    vec_put(v->force, slot, vec_add(vec_at(v->force, slot), quat_rotate(frame, x_to_axis(axis, force))));
-    vec_put(v->torque, slot, vec_sub(vec_at(v->torque, slot), quat_rotate(frame, x_to_axis(axis, moment))));
+    vec_put(v->force, slot,
+            vec_add(vec_at(v->force, slot), quat_rotate(frame, x_to_axis(axis, force))));
+    vec_put(v->torque, slot,
+            vec_sub(vec_at(v->torque, slot), quat_rotate(frame, x_to_axis(axis, moment))));
 }
 
 /* How a bond is deformed now. */
@@ -152,7 +145,8 @@ struct pose {
     bool small;
 };
 
-IN_LOOP struct pose pose_of(const struct voxels *v, enum axis axis, int64_t lower, int64_t upper, bool small)
+IN_LOOP struct pose pose_of(const struct voxels *v, enum axis axis, int64_t lower, int64_t upper,
+                            bool small)
 {
     const double rest = 0.5 * (v->size[lower] + v->size[upper]);
     const struct quat orientation = quat_at(v->orientation, lower), back = quat_conj(orientation);
@@ -163,21 +157,24 @@ IN_LOOP struct pose pose_of(const struct voxels *v, enum axis axis, int64_t lowe
     const struct quat relative = {turn.w, turn_axis.x, turn_axis.y, turn_axis.z};
 
     if (next_frame_is_small(small, relative.w, u, rest)) {
-        const struct deformation slight = {{u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
+        const struct deformation slight = {
+            {u.x - rest, u.y, u.z}, {0.0, 0.0, 0.0}, rotation_vector(relative)};
         return (struct pose){slight, orientation, true};
     }
     const double length = sqrt(vec_dot(u, u));
     const struct quat onto_x = rotation_onto_x(u, length);
     const struct vec straighten = x_to_axis(axis, (struct vec){onto_x.x, onto_x.y, onto_x.z});
-    const struct deformation large = {
-        {length - rest, 0.0, 0.0}, rotation_vector(onto_x), rotation_vector(quat_mul(onto_x, relative))};
+    const struct deformation large = {{length - rest, 0.0, 0.0},
+                                      rotation_vector(onto_x),
+                                      rotation_vector(quat_mul(onto_x, relative))};
     const struct quat frame =
         quat_mul(orientation, (struct quat){onto_x.w, -straighten.x, -straighten.y, -straighten.z});
     return (struct pose){large, frame, false};
 }
 
 /* False if the bond is stretched or compressed by more than `most`, or by a NaN. */
-IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, double most, double per_second)
+IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, double most,
+                        double per_second)
 {
     const struct bonds *bonds = &body->bonds[axis];
     const int64_t upper = lower + bonds->step;
@@ -187,7 +184,8 @@ IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, 
     const struct deformation *now = &pose.deformation;
 
     struct wrench wrench = spring(coupling, *now);
-    if (pose.small == small) { /* a change of frame leaves the history, from which the next rates come */
+    /* a change of frame leaves the history, from which the next rates come */
+    if (pose.small == small) {
         add_damping(&wrench, coupling, rate_of(*now, last_of(bonds, lower), per_second));
         keep(bonds, lower, *now);
     }
@@ -202,11 +200,12 @@ IN_LOOP bool bonds_along(const struct body *body, enum axis axis, double most, d
 {
     const struct bonds *bonds = &body->bonds[axis];
     bool fine = true;
-    for (int64_t i = 0; i < bonds->n; i++) fine &= bond_apply(body, axis, bonds->lower[i], most, per_second);
+    for (int64_t i = 0; i < bonds->n; i++)
+        fine &= bond_apply(body, axis, bonds->lower[i], most, per_second);
     return fine;
 }
 
-bool scalar_bonds_apply(struct body *body, double per_second)
+bool vox_scalar_bonds_apply(struct body *body, double per_second)
 {
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;
@@ -232,7 +231,8 @@ static void add_tension(const struct body *body, enum axis axis, struct tension 
     const struct bonds *bonds = &body->bonds[axis];
     for (int64_t i = 0; i < bonds->n; i++) {
         const int64_t lower = bonds->lower[i], upper = lower + bonds->step;
-        const struct pose pose = pose_of(&body->voxels, axis, lower, upper, bonds->small[lower] != 0.0);
+        const struct pose pose =
+            pose_of(&body->voxels, axis, lower, upper, bonds->small[lower] != 0.0);
         const double strain = pose.deformation.stretch.x / body->model->settings.voxel_size;
         tension->energy += spring_energy(coupling_of(body, lower, upper), pose.deformation);
         tension->least = fmin(tension->least, strain);
@@ -240,7 +240,7 @@ static void add_tension(const struct body *body, enum axis axis, struct tension 
     }
 }
 
-struct tension bonds_tension(const struct body *body)
+struct tension vox_bonds_tension(const struct body *body)
 {
     const bool any = body->census.n_bonds > 0;
     struct tension tension = {0.0, any ? HUGE_VAL : 0.0, any ? -HUGE_VAL : 0.0};

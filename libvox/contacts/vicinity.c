@@ -8,9 +8,9 @@ static int64_t steps_to(const int32_t by[3])
     return labs(by[0]) + labs(by[1]) + labs(by[2]);
 }
 
-/* ---- the places within a few bonds ------------------------------------------------------------------------ */
+/* ---- the places within a few bonds ----------------------------------------------------------- */
 
-int64_t vicinity_index(const struct vicinity *vicinity, const int32_t by[3])
+int64_t vox_vicinity_index(const struct vicinity *vicinity, const int32_t by[3])
 {
     const int64_t hops = vicinity->hops, width = 2 * hops + 1;
     if (steps_to(by) > hops) return -1;
@@ -25,7 +25,7 @@ static void find_ways(const struct vicinity *vicinity, struct place *place)
         const bool upwards = place->by[axis] > 0;
         int32_t before[] = {place->by[0], place->by[1], place->by[2]};
         before[axis] += upwards ? -1 : 1;
-        place->from[place->n_ways] = (int32_t)vicinity_index(vicinity, before);
+        place->from[place->n_ways] = (int32_t)vox_vicinity_index(vicinity, before);
         place->side[place->n_ways++] = 2 * axis + upwards;
     }
 }
@@ -48,7 +48,7 @@ static void append_shell(struct vicinity *vicinity, int64_t steps)
     }
 }
 
-/* ---- the cells within a radius ---------------------------------------------------------------------------- */
+/* ---- the cells within a radius --------------------------------------------------------------- */
 
 /* Whether a step in the lattice leads to a later slot. */
 static bool leads_on(int32_t x, int32_t y, int32_t z)
@@ -63,19 +63,21 @@ static void append_cells(struct vicinity *vicinity, double radius)
     for (int32_t z = 0; z <= most; z++) {
         for (int32_t y = -most; y <= most; y++) {
             for (int32_t x = -most; x <= most; x++) {
-                if (!leads_on(x, y, z) || !((double)(x * x + y * y + z * z) < radius * radius)) continue;
+                if (!leads_on(x, y, z) || !((double)(x * x + y * y + z * z) < radius * radius))
+                    continue;
                 struct near_cell *cell = &vicinity->cells[vicinity->n_cells++];
                 *cell = (struct near_cell){.by = {x, y, z}};
-                cell->place = (int32_t)vicinity_index(vicinity, cell->by);
+                cell->place = (int32_t)vox_vicinity_index(vicinity, cell->by);
             }
         }
     }
 }
 
-enum vox_status vicinity_create(struct vicinity *vicinity, int64_t hops, double radius)
+enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, double radius)
 {
     const size_t width = 2 * (size_t)hops + 1, most = (size_t)radius;
-    const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3; /* of an octahedron */
+    /* of an octahedron */
+    const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3;
     const size_t n_cells = (most + 1) * (2 * most + 1) * (2 * most + 1);
     vicinity->hops = hops;
     vicinity->index = malloc(width * width * width * sizeof *vicinity->index);
@@ -87,7 +89,7 @@ enum vox_status vicinity_create(struct vicinity *vicinity, int64_t hops, double 
     return VOX_OK;
 }
 
-void vicinity_destroy(struct vicinity *vicinity)
+void vox_vicinity_destroy(struct vicinity *vicinity)
 {
     free(vicinity->index);
     free(vicinity->places);

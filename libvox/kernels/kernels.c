@@ -1,14 +1,15 @@
 /* The kernels, and which of them this processor can use. */
 #include "internal.h"
 
-static const struct kernel scalar_kernel = {"scalar", NULL, scalar_bonds_apply, scalar_voxels_advance};
+static const struct kernel scalar_kernel = {"scalar", NULL, vox_scalar_bonds_apply,
+                                            vox_scalar_voxels_advance};
 
 static const struct kernel *const kernels[] = {
     &scalar_kernel,
-    &generic_kernel,
+    &vox_generic_kernel,
 #ifdef VOX_X86_KERNELS
-    &avx2_kernel,
-    &avx512_kernel,
+    &vox_avx2_kernel,
+    &vox_avx512_kernel,
 #endif
 };
 
@@ -19,7 +20,7 @@ static bool can_use(const struct kernel *kernel)
     return !kernel->usable || kernel->usable();
 }
 
-const struct kernel *kernel_of(int32_t number)
+const struct kernel *vox_kernel_of(int32_t number)
 {
     if (number < 0 || number > N_KERNELS) return NULL;
     if (number > 0) return can_use(kernels[number - 1]) ? kernels[number - 1] : NULL;
@@ -32,15 +33,4 @@ const char *vox_kernel_name(int32_t number)
 {
     if (number < 1 || number > N_KERNELS) return NULL;
     return can_use(kernels[number - 1]) ? kernels[number - 1]->name : "";
-}
-
-const char *vox_compiler(void)
-{
-#if defined(__clang__)
-    return "clang " __clang_version__;
-#elif defined(__GNUC__)
-    return "gcc " __VERSION__;
-#else
-    return "an unknown compiler";
-#endif
 }

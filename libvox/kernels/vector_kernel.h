@@ -1,12 +1,13 @@
-/* The fast kernel: the bond law (sections 5 and 6) and the motion (sections 4, 7 and 8) for a tile of slots at a time,
- * in loops that the compiler turns into vector instructions. A file for each instruction set includes this one, after a
- * #pragma that allows those instructions, with VECTOR(name) giving its own names; contraction being off, all give the
- * same bits.
+/* The fast kernel: the bond law (sections 5 and 6) and the motion (sections 4, 7 and 8) for a tile
+ * of slots at a time, in loops that the compiler turns into vector instructions. A file for each
+ * instruction set includes this one, after a #pragma that allows those instructions, with
+ * VECTOR(name) giving its own names; contraction being off, all give the same bits.
  *
  * A missing bond is computed like any other and then left out: no lane depends on another. */
 #include <float.h>
 #include <string.h>
 
+#include "axes.h"
 #include "for_vectors.h"
 #include "internal.h"
 #include "lanes.h"

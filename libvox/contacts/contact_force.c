@@ -1,4 +1,5 @@
-/* Self collision: how voxels that touch repel each other (section 10); damping and friction are ours. */
+/* Self collision: how voxels that touch repel each other (section 10); damping and friction are
+ * ours. */
 #include "internal.h"
 
 /* Two voxels closer than their envelopes reach. */
@@ -44,22 +45,28 @@ static double sharers(const struct voxels *v, const struct touch *touch)
     return (double)(first > second ? first : second);
 }
 
-/* The damper of which all contacts together would end the approach within one step; none is ever stronger. */
+/* The damper of which all contacts together would end the approach within one step; none is ever
+ * stronger. */
 static double strongest_drag(const struct voxels *v, const struct touch *touch, double dt)
 {
-    return 1.0 / (dt * sharers(v, touch) * (v->mobility[touch->first] + v->mobility[touch->second]));
+    return 1.0 /
+           (dt * sharers(v, touch) * (v->mobility[touch->first] + v->mobility[touch->second]));
 }
 
-/* The force of which all contacts together would end the sliding within one step; friction never exceeds it. */
-static double stopping_force(const struct voxels *v, const struct touch *touch, double speed, double dt)
+/* The force of which all contacts together would end the sliding within one step; friction never
+ * exceeds it. */
+static double stopping_force(const struct voxels *v, const struct touch *touch, double speed,
+                             double dt)
 {
     const double lever2 = 0.25 * touch->distance * touch->distance;
-    const double turning = lever2 * v->turnability[touch->first] + lever2 * v->turnability[touch->second];
+    const double turning =
+        lever2 * v->turnability[touch->first] + lever2 * v->turnability[touch->second];
     const double mobility = v->mobility[touch->first] + v->mobility[touch->second] + turning;
     return speed / (dt * sharers(v, touch) * mobility);
 }
 
-static struct vec friction(const struct body *body, const struct touch *touch, struct vec sliding, double push)
+static struct vec friction(const struct body *body, const struct touch *touch, struct vec sliding,
+                           double push)
 {
     const double speed = sqrt(vec_dot(sliding, sliding));
     if (!(speed > 0.0)) return (struct vec){0.0, 0.0, 0.0};
@@ -76,7 +83,8 @@ static void collide(const struct body *body, const struct touch *touch)
     const double parting = vec_dot(velocity, touch->towards);
     const double drag = fmin(c->touch_drag, strongest_drag(v, touch, body->census.dt));
     const double push = fmax(0.0, c->stretch * touch->overlap - drag * parting); /* never a pull */
-    const struct vec rub = friction(body, touch, vec_sub(velocity, vec_scale(parting, touch->towards)), push);
+    const struct vec rub =
+        friction(body, touch, vec_sub(velocity, vec_scale(parting, touch->towards)), push);
     push_apart(v, touch, vec_add(vec_scale(push, touch->towards), rub));
     turn_both(v, touch, rub);
 }
@@ -89,14 +97,17 @@ IN_LOOP void repel(const struct body *body, const struct touch *touch)
 }
 
 /* Whether two listed voxels touch, and how; half the envelope is theirs. */
-IN_LOOP bool touches(const struct voxels *v, struct pair pair, double half_envelope, struct touch *touch)
+IN_LOOP bool touches(const struct voxels *v, struct pair pair, double half_envelope,
+                     struct touch *touch)
 {
-    const struct vec apart = vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
+    const struct vec apart =
+        vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
     const double reach = half_envelope * (v->size[pair.first] + v->size[pair.second]);
     const double distance2 = vec_dot(apart, apart);
     if (!(distance2 < reach * reach && distance2 > 0.0)) return false;
     const double distance = sqrt(distance2);
-    *touch = (struct touch){pair.first, pair.second, vec_scale(1.0 / distance, apart), distance, reach - distance};
+    *touch = (struct touch){pair.first, pair.second, vec_scale(1.0 / distance, apart), distance,
+                            reach - distance};
     return true;
 }
 
@@ -112,7 +123,7 @@ static void count_touching(struct body *body, double half_envelope)
     }
 }
 
-void contacts_apply(struct body *body)
+void vox_contacts_apply(struct body *body)
 {
     const struct vox_settings *s = &body->model->settings;
     const bool elastic = s->contact_damping == 0.0 && !s->contact_friction;

@@ -11,9 +11,9 @@
 
 static bool avx512_usable(void)
 {
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512bw");
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
 }
 
-const struct kernel avx512_kernel = VECTOR_KERNEL("avx512", avx512_usable);
+const struct kernel vox_avx512_kernel = VECTOR_KERNEL("avx512", avx512_usable);
 #endif

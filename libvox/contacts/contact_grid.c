@@ -1,15 +1,15 @@
-/* The skin of a body by where it is now: cubes at least as wide as the reach, so that whatever is in reach of a voxel
- * lies in its cube or in one beside it. */
+/* The skin of a body by where it is now: cubes at least as wide as the reach, so that whatever is
+ * in reach of a voxel lies in its cube or in one beside it. */
 #include <stdlib.h>
 
 #include "internal.h"
 
 static const double ROUNDING = 1e-12;
-static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body that is spread widely gets wider cubes */
+static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body spread widely gets wider cubes */
 
-enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
+enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin)
 {
-    grid_destroy(grid);
+    vox_grid_destroy(grid);
     grid->n_skin = n_skin;
     grid->most_cubes = CUBES_PER_VOXEL * n_skin + 1;
     grid->begin = malloc((size_t)(grid->most_cubes + 1) * sizeof *grid->begin);
@@ -17,10 +17,12 @@ enum vox_status grid_shape(struct grid *grid, int64_t n_skin)
     grid->packed = malloc((size_t)(n_skin + 1) * sizeof *grid->packed);
     grid->cube_of = malloc((size_t)(n_skin + 1) * sizeof *grid->cube_of);
     grid->found = malloc((size_t)(n_skin + 1) * sizeof *grid->found);
-    return grid->begin && grid->voxels && grid->packed && grid->cube_of && grid->found ? VOX_OK : VOX_NO_MEMORY;
+    return grid->begin && grid->voxels && grid->packed && grid->cube_of && grid->found
+               ? VOX_OK
+               : VOX_NO_MEMORY;
 }
 
-void grid_destroy(struct grid *grid)
+void vox_grid_destroy(struct grid *grid)
 {
     free(grid->begin);
     free(grid->voxels);
@@ -85,7 +87,7 @@ static int64_t cube_at(const struct grid *grid, const int64_t place[3])
     return place[0] + grid->length[0] * (place[1] + grid->length[1] * place[2]);
 }
 
-void grid_fill(struct grid *grid, const struct body *body, double reach)
+void vox_grid_fill(struct grid *grid, const struct body *body, double reach)
 {
     const struct span span = span_of(body);
     grid->reach = reach;
@@ -109,14 +111,14 @@ void grid_fill(struct grid *grid, const struct body *body, double reach)
 }
 
 /* Adds the voxels of a row of cubes that come after one and are in reach of it. */
-static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first, struct vec position,
-                             int64_t n)
+static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first,
+                             struct vec position, int64_t n)
 {
     const double reach2 = grid->reach * grid->reach;
     for (int32_t k = grid->begin[cube]; k < grid->begin[last + 1]; k++) {
         const int32_t other = grid->voxels[k];
         const struct vec apart = vec_sub(grid->packed[k], position);
-        grid->found[n] = other; /* overwritten by the next unless it counts: nobody can foresee which do */
+        grid->found[n] = other; /* overwritten by the next unless it counts: without a jump */
         n += (other > first) & (vec_dot(apart, apart) < reach2);
     }
     return n;
@@ -133,7 +135,7 @@ static void sort(int32_t *slots, int64_t n)
     }
 }
 
-int64_t grid_find(const struct grid *grid, const struct body *body, int32_t first)
+int64_t vox_grid_find(const struct grid *grid, const struct body *body, int32_t first)
 {
     double at[3];
     int64_t from[3], to[3], n = 0;

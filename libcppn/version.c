@@ -1,0 +1,7 @@
+/* Which library this is. */
+#include "cppn.h"
+
+const char *cppn_version(void)
+{
+    return CPPN_VERSION;
+}

@@ -1,0 +1,8 @@
+"""What the library shows to the linker, and to the loader of the extension."""
+
+from symbols import SymbolTests
+
+
+class TestSymbols(SymbolTests):
+    library = "libvox"
+    prefix = "vox"
