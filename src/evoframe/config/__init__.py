@@ -1,1 +1,17 @@
 """Configurations: presets, files and overrides become one checked value."""
+
+from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
+from evoframe.config.resolve import load_config, named_simulator, resolved
+
+__all__ = [
+    "Layer",
+    "Layers",
+    "layer_of",
+    "layers_in",
+    "layers_of",
+    "load_config",
+    "named_simulator",
+    "preset_names",
+    "read_layers",
+    "resolved",
+]

@@ -11,10 +11,10 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract.config import COMPONENTS, POPULATION_COMPONENTS
-from evoframe.documents.trees import Tree
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
+from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files.reading import read_text
+from evoframe.files import read_text
 from evoframe.messages import suggestion
 
 __all__ = [

@@ -11,7 +11,7 @@ import attrs
 from attrs import validators
 
 from evoframe.config.layers import Layer, Layers, layer_of, read_layers
-from evoframe.contract.config import (
+from evoframe.contract import (
     COMPONENTS,
     POPULATION_COMPONENTS,
     Chosen,
@@ -19,15 +19,13 @@ from evoframe.contract.config import (
     PopulationConfig,
     RunConfig,
     RunSettings,
+    Simulator,
     is_role,
 )
-from evoframe.contract.protocols import Simulator
-from evoframe.documents.structuring import Fault, StructureError, structure
-from evoframe.documents.trees import Tree
+from evoframe.documents import Fault, StructureError, Tree, structure
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import found, suggestion
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import KINDS, Offer, Plugins
+from evoframe.registry import KINDS, Offer, Plugins, discover
 
 __all__ = ["load_config", "named_simulator", "resolved"]
 

@@ -19,8 +19,7 @@ from evoframe.contract.protocols import (
     Objective,
     Simulator,
 )
-from evoframe.documents.structuring import unstructure
-from evoframe.documents.trees import Tree, as_read
+from evoframe.documents import Tree, as_read, unstructure
 
 __all__ = [
     "COMPONENTS",

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import logging
 
-from evoframe.contract.optional import SupportsExport
-from evoframe.contract.protocols import Simulator
-from evoframe.contract.values import Design
+from evoframe.contract import Design, Simulator, SupportsExport
 from evoframe.messages import cause_of
 
 __all__ = ["exports"]

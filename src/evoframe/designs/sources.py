@@ -8,17 +8,12 @@ from pathlib import Path
 
 import attrs
 
-from evoframe.config.layers import Layer, Layers, layers_in, read_layers
-from evoframe.config.resolve import load_config, named_simulator, resolved
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsReading, SupportsSettings
-from evoframe.contract.values import Design
+from evoframe.config import Layer, Layers, layers_in, load_config, named_simulator, read_layers, resolved
+from evoframe.contract import Design, RunConfig, SupportsReading, SupportsSettings
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files.reading import is_directory
-from evoframe.record.champion import read_champion
-from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.run import Run, open_run
-from evoframe.registry.registry import Plugins
+from evoframe.files import is_directory
+from evoframe.record import CONFIG_FILE, Run, open_run, read_champion
+from evoframe.registry import Plugins
 
 __all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
 

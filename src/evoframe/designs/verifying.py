@@ -7,18 +7,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from evoframe.config.layers import layers_of
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsVariants, Variant, unit_of
-from evoframe.contract.protocols import ExecutorRun, Objective
-from evoframe.contract.values import Design, Score
+from evoframe.config import layers_of
+from evoframe.contract import (
+    Design,
+    ExecutorRun,
+    Objective,
+    RunConfig,
+    Score,
+    SupportsVariants,
+    Variant,
+    unit_of,
+)
 from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import ConfigurationError
-from evoframe.evolution.evaluation import simulated
-from evoframe.record.run import Run
-from evoframe.record.verification import UNCHANGED, Finding, Verification, keep_verification
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import Plugins
+from evoframe.evolution import simulated
+from evoframe.record import UNCHANGED, Finding, Run, Verification, keep_verification
+from evoframe.registry import Plugins, discover
 
 __all__ = ["keep_of_job", "verify", "verify_job"]
 

@@ -1,1 +1,18 @@
 """The coevolution engine: populations, the loop, and the evaluation of designs. No files, no terminal."""
+
+from evoframe.evolution.assembly import assemble, evaluator_of
+from evoframe.evolution.coevolution import Coevolution, first_meetings
+from evoframe.evolution.evaluation import Evaluator, simulated
+from evoframe.evolution.population import Population
+from evoframe.evolution.randomness import stream
+
+__all__ = [
+    "Coevolution",
+    "Evaluator",
+    "Population",
+    "assemble",
+    "evaluator_of",
+    "first_meetings",
+    "simulated",
+    "stream",
+]

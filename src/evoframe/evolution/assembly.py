@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from evoframe.contract.config import RunConfig
+from evoframe.contract import RunConfig
 from evoframe.evolution.coevolution import Coevolution
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.population import Population

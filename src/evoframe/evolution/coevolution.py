@@ -14,10 +14,19 @@ import numpy as np
 from attrs.validators import ge
 from numpy.typing import NDArray
 
-from evoframe.contract.blame import blaming
-from evoframe.contract.protocols import Aggregator, CollaborationStrategy
-from evoframe.contract.values import BestPair, Design, Pair, Score, Scores, Turn, Workload
-from evoframe.documents.structuring import structure
+from evoframe.contract import (
+    Aggregator,
+    BestPair,
+    CollaborationStrategy,
+    Design,
+    Pair,
+    Score,
+    Scores,
+    Turn,
+    Workload,
+    blaming,
+)
+from evoframe.documents import structure
 from evoframe.errors import ComponentError
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.population import Population

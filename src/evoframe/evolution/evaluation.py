@@ -10,9 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import attrs
 import numpy as np
 
-from evoframe.contract.blame import blaming
-from evoframe.contract.protocols import ExecutorRun, Objective, Simulator
-from evoframe.contract.values import Design, Outcome, Record, Score
+from evoframe.contract import Design, ExecutorRun, Objective, Outcome, Record, Score, Simulator, blaming
 from evoframe.errors import ComponentError, WorkerError
 
 __all__ = ["Evaluator", "simulated"]

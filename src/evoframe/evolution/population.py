@@ -13,10 +13,8 @@ import numpy as np
 from attrs.validators import ge
 from numpy.typing import NDArray
 
-from evoframe.contract.blame import blaming
-from evoframe.contract.protocols import Encoder, EvolverRun, Network
-from evoframe.contract.values import Design, Member, PopulationReport
-from evoframe.documents.structuring import structure
+from evoframe.contract import Design, Encoder, EvolverRun, Member, Network, PopulationReport, blaming
+from evoframe.documents import structure
 from evoframe.errors import ComponentError, RunError
 
 __all__ = ["Population"]

@@ -1,1 +1,36 @@
 """Files on disk: reading what may come from anyone, atomic writing, locks."""
+
+from evoframe.files.locks import LOCK_FILE, Lock, acquire_lock, locked, locked_after_others, released_on_error
+from evoframe.files.reading import (
+    LARGEST_DOCUMENT,
+    is_directory,
+    is_file,
+    parsed_json,
+    parsed_toml,
+    read_text,
+    refuse_links,
+    shown_name,
+)
+from evoframe.files.writing import is_leftover, json_text, remove, write_atomically, write_json
+
+__all__ = [
+    "LARGEST_DOCUMENT",
+    "LOCK_FILE",
+    "Lock",
+    "acquire_lock",
+    "is_directory",
+    "is_file",
+    "is_leftover",
+    "json_text",
+    "locked",
+    "locked_after_others",
+    "parsed_json",
+    "parsed_toml",
+    "read_text",
+    "refuse_links",
+    "released_on_error",
+    "remove",
+    "shown_name",
+    "write_atomically",
+    "write_json",
+]

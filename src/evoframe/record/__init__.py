@@ -1,1 +1,29 @@
 """A run's directory: what is written while a run goes on, and the run read back from it."""
+
+from evoframe.record.champion import Champion, design_from_json, read_champion
+from evoframe.record.checksums import CHAINED, SINGLE
+from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE
+from evoframe.record.provenance import provenance_of
+from evoframe.record.run import Run, load_run, open_run, open_unchecked
+from evoframe.record.store import Store
+from evoframe.record.verification import UNCHANGED, Finding, Verification, keep_verification
+
+__all__ = [
+    "CHAINED",
+    "CHAMPION_FILE",
+    "CONFIG_FILE",
+    "SINGLE",
+    "UNCHANGED",
+    "Champion",
+    "Finding",
+    "Run",
+    "Store",
+    "Verification",
+    "design_from_json",
+    "keep_verification",
+    "load_run",
+    "open_run",
+    "open_unchecked",
+    "provenance_of",
+    "read_champion",
+]

@@ -11,9 +11,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.contract.values import BestPair, Design
+from evoframe.contract import BestPair, Design
 from evoframe.errors import InputError, RunError
-from evoframe.files.reading import LARGEST_DOCUMENT, parsed_json, read_text
+from evoframe.files import LARGEST_DOCUMENT, parsed_json, read_text
 
 __all__ = [
     "FORMAT",

@@ -11,9 +11,9 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract.config import is_role
+from evoframe.contract import is_role
 from evoframe.errors import InputError
-from evoframe.files.reading import LARGEST_DOCUMENT
+from evoframe.files import LARGEST_DOCUMENT
 from evoframe.record.checksums import CHAINED, SINGLE, Checksums
 from evoframe.record.layout import CONFIG_FILE, RUN_FORMAT, schema
 

@@ -7,14 +7,13 @@ import platform
 import numpy as np
 
 from evoframe._version import __version__
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsProvenance
-from evoframe.documents.trees import Tree
+from evoframe.contract import RunConfig, SupportsProvenance
+from evoframe.documents import Tree
 
-__all__ = ["provenance"]
+__all__ = ["provenance_of"]
 
 
-def provenance(config: RunConfig) -> Tree:
+def provenance_of(config: RunConfig) -> Tree:
     """Return the table ``[provenance]``: versions, machine type, and where each component comes from."""
     components = dict(config.components())
     libraries = {"python": platform.python_version(), "numpy": np.__version__}

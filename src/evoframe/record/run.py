@@ -10,7 +10,7 @@ from typing import Any
 import attrs
 
 from evoframe.errors import InputError
-from evoframe.files.reading import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text, refuse_links
+from evoframe.files import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text, refuse_links
 from evoframe.record.champion import Champion, champion_from_json
 from evoframe.record.checksums import CHAINED, SINGLE
 from evoframe.record.database import Database, Table

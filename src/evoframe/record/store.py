@@ -13,10 +13,9 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.contract.values import Design, Pair, PopulationReport, Turn
+from evoframe.contract import Design, Pair, PopulationReport, Turn
 from evoframe.errors import ComponentError, InputError, RunError
-from evoframe.files.locks import Lock
-from evoframe.files.writing import json_text, remove, write_atomically, write_json
+from evoframe.files import Lock, json_text, remove, write_atomically, write_json
 from evoframe.record.champion import champion_document
 from evoframe.record.checksums import CHAINED, SINGLE, Checksums
 from evoframe.record.database import Table

@@ -10,8 +10,8 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract.values import Score
-from evoframe.files.writing import write_json
+from evoframe.contract import Score
+from evoframe.files import write_json
 from evoframe.record.layout import VERIFICATION_FILE
 
 __all__ = ["UNCHANGED", "Finding", "Verification", "keep_verification", "verification_from_json"]

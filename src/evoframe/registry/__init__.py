@@ -1,1 +1,8 @@
 """The plugins of this process: how they are found, what they offer, who observes."""
+
+from evoframe.registry.discovery import discover
+from evoframe.registry.hookspecs import hookimpl
+from evoframe.registry.observers import Observers
+from evoframe.registry.registry import KINDS, Offer, Plugins
+
+__all__ = ["KINDS", "Observers", "Offer", "Plugins", "discover", "hookimpl"]

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 
-from evoframe.contract.config import Source
+from evoframe.contract import Source
 from evoframe.errors import PluginError, PluginWarning
 from evoframe.messages import cause_of
 from evoframe.registry.registry import Plugins, Skipped, normalized

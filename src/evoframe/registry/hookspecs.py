@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pluggy
 
-from evoframe.contract.protocols import (
+from evoframe.contract import (
     Aggregator,
     CollaborationStrategy,
     Encoder,
@@ -20,13 +20,13 @@ from evoframe.contract.protocols import (
     Executor,
     Objective,
     Simulator,
+    Turn,
 )
-from evoframe.contract.values import Turn
 
 if TYPE_CHECKING:
     import click
 
-    from evoframe.contract.config import RunConfig
+    from evoframe.contract import RunConfig
 
 __all__ = ["hookimpl", "hookspec"]
 

@@ -9,8 +9,7 @@ from typing import Any
 import attrs
 import pluggy
 
-from evoframe.contract import protocols
-from evoframe.contract.config import Source
+from evoframe.contract import Source, protocols
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import suggestion
 from evoframe.registry import hookspecs

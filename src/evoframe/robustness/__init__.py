@@ -1,1 +1,30 @@
 """Robustness: the same random controllers for every body."""
+
+from evoframe.robustness.api import Measurable, measurable, measure, measure_robustness, setting_of
+from evoframe.robustness.candidates import read_candidates
+from evoframe.robustness.files import (
+    SETTING_FILE,
+    document_of,
+    read_robustness,
+    refuse_another,
+    write_measurement,
+)
+from evoframe.robustness.measurement import Body, Divergence, Robustness, Setting
+
+__all__ = [
+    "SETTING_FILE",
+    "Body",
+    "Divergence",
+    "Measurable",
+    "Robustness",
+    "Setting",
+    "document_of",
+    "measurable",
+    "measure",
+    "measure_robustness",
+    "read_candidates",
+    "read_robustness",
+    "refuse_another",
+    "setting_of",
+    "write_measurement",
+]

@@ -8,13 +8,12 @@ from typing import Any
 
 import attrs
 
-from evoframe.config.layers import layers_of
-from evoframe.contract.optional import SupportsRandomControllers, unit_of
-from evoframe.documents.trees import as_read
+from evoframe.config import layers_of
+from evoframe.contract import SupportsRandomControllers, unit_of
+from evoframe.documents import as_read
 from evoframe.errors import ConfigurationError
-from evoframe.record.run import Run
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import Plugins
+from evoframe.record import Run
+from evoframe.registry import Plugins, discover
 from evoframe.robustness.candidates import Candidates, champions, read_candidates
 from evoframe.robustness.measurement import Bench, Body, Robustness, Setting, digest_of
 

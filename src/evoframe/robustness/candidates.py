@@ -7,16 +7,13 @@ from pathlib import Path
 
 import attrs
 
-from evoframe.config.layers import Layer
-from evoframe.config.resolve import load_config
-from evoframe.contract.blame import blaming
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsPublished, SupportsRandomControllers
-from evoframe.designs.sources import DEFAULT_PRESET, Job, read_job
-from evoframe.documents.trees import differences
+from evoframe.config import Layer, load_config
+from evoframe.contract import RunConfig, SupportsPublished, SupportsRandomControllers, blaming
+from evoframe.designs import DEFAULT_PRESET, Job, read_job
+from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files.reading import is_file, shown_name
-from evoframe.registry.registry import Plugins
+from evoframe.files import is_file, shown_name
+from evoframe.registry import Plugins
 from evoframe.robustness.measurement import Candidate
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.names import name_of

@@ -14,10 +14,9 @@ from typing import Any
 import attrs
 import numpy as np
 
-from evoframe.documents.trees import as_read, differences
+from evoframe.documents import as_read, differences
 from evoframe.errors import InputError
-from evoframe.files.reading import is_file, parsed_json, read_text
-from evoframe.files.writing import write_atomically
+from evoframe.files import is_file, parsed_json, read_text, write_atomically
 from evoframe.robustness.measurement import Body, Divergence, Robustness, Setting
 
 __all__ = [

@@ -15,13 +15,9 @@ import numpy as np
 from attrs import validators
 from numpy.typing import NDArray
 
-from evoframe.contract.blame import blaming
-from evoframe.contract.optional import SupportsRandomControllers
-from evoframe.contract.protocols import ExecutorRun, Objective
-from evoframe.contract.values import Design, Score
+from evoframe.contract import Design, ExecutorRun, Objective, Score, SupportsRandomControllers, blaming
 from evoframe.errors import ComponentError, ConfigurationError, InputError, WorkerError
-from evoframe.evolution.evaluation import simulated
-from evoframe.evolution.randomness import stream
+from evoframe.evolution import simulated, stream
 
 __all__ = [
     "Bench",

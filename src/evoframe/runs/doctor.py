@@ -11,19 +11,15 @@ from typing import Any, Literal, TypeAlias
 
 import attrs
 
-from evoframe.record.checksums import CHAINED, SINGLE
-from evoframe.contract.config import RunConfig
+from evoframe.record import CHAINED, CHAMPION_FILE, Run, SINGLE, open_unchecked, provenance_of
+from evoframe.contract import RunConfig
 from evoframe.errors import EvoframeError, InputError
-from evoframe.evolution.evaluation import simulated
-from evoframe.record.run import Run, open_unchecked
-from evoframe.files.locks import LOCK_FILE, acquire_lock
-from evoframe.registry.registry import Plugins
-from evoframe.documents.trees import differences
-from evoframe.record.provenance import provenance
-from evoframe.config.resolve import load_config
+from evoframe.evolution import assemble, simulated
+from evoframe.files import LOCK_FILE, acquire_lock
+from evoframe.registry import Plugins
+from evoframe.documents import differences
+from evoframe.config import load_config
 from evoframe.runs.resuming import configuration_of, restore
-from evoframe.evolution.assembly import assemble
-from evoframe.record.layout import CHAMPION_FILE
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
 
@@ -109,7 +105,7 @@ def _undisturbed(directory: Path) -> Iterator[None]:
 
 
 def _versions(config: RunConfig) -> str:
-    found = provenance(config)
+    found = provenance_of(config)
     libraries = ", ".join(f"{name} {version}" for name, version in found["libraries"].items())
     return f"evoframe {found['evoframe']} on {found['machine']}, {found['c_library']}; {libraries}"
 
@@ -143,7 +139,7 @@ def _configuration(run: Run, plugins: Plugins, found: list[RunConfig]) -> str:
 
 
 def _versions_then_and_now(run: Run, config: RunConfig) -> Check:
-    changes = differences(run.config.get("provenance", {}), provenance(config))
+    changes = differences(run.config.get("provenance", {}), provenance_of(config))
     if not changes:
         return Check("versions", "ok", "those that the run began with")
     return Check("versions", "note", f"not those that the run began with: {'; '.join(changes)}")

@@ -10,19 +10,14 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsVariants
-from evoframe.contract.values import Turn
-from evoframe.designs.verifying import verified
+from evoframe.contract import RunConfig, SupportsVariants, Turn
+from evoframe.designs import verified
 from evoframe.errors import ComponentError, RunError
-from evoframe.evolution.coevolution import Coevolution
-from evoframe.files.locks import locked
+from evoframe.evolution import Coevolution
+from evoframe.files import locked
 from evoframe.messages import cause_of
-from evoframe.record.run import Run
-from evoframe.record.store import Store
-from evoframe.record.verification import Verification, keep_verification
-from evoframe.registry.observers import Observers
-from evoframe.registry.registry import Plugins
+from evoframe.record import Run, Store, Verification, keep_verification
+from evoframe.registry import Observers, Plugins
 
 __all__ = ["Execution", "verify_champion"]
 

@@ -6,25 +6,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from evoframe.config.layers import Layer, layers_in, layers_of
-from evoframe.config.resolve import resolved
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsVariants
-from evoframe.documents.trees import differences
+from evoframe.config import Layer, layers_in, layers_of, resolved
+from evoframe.contract import RunConfig, SupportsVariants
+from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.evolution.assembly import assemble
-from evoframe.evolution.coevolution import Coevolution
-from evoframe.files.locks import Lock, acquire_lock, released_on_error
-from evoframe.files.reading import parsed_json
-from evoframe.files.writing import is_leftover, remove
-from evoframe.record.champion import design_from_json
-from evoframe.record.checksums import CHAINED, SINGLE
-from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.provenance import provenance
-from evoframe.record.run import Run, open_run
-from evoframe.record.store import Store
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import Plugins
+from evoframe.evolution import Coevolution, assemble
+from evoframe.files import Lock, acquire_lock, is_leftover, parsed_json, released_on_error, remove
+from evoframe.record import CHAINED, CONFIG_FILE, Run, SINGLE, Store, design_from_json, open_run, provenance_of
+from evoframe.registry import Plugins, discover
 from evoframe.runs.execution import Execution, verify_champion
 from evoframe.runs.starting import opened_store
 
@@ -177,7 +166,7 @@ def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
     Raises:
         ConfigurationError: There is something, and that is not allowed.
     """
-    changes = differences(run.config.get("provenance", {}), provenance(config))
+    changes = differences(run.config.get("provenance", {}), provenance_of(config))
     if changes and not allowed:
         message = f"{run.directory}: not what the run was begun with, so its result may differ"
         todo = "to go on all the same, which is noted: --allow-different-versions"

@@ -1,1 +1,6 @@
 """Worker processes, and the number of cores they may use."""
+
+from evoframe.workers.cores import available_cores
+from evoframe.workers.processes import WorkerProcesses
+
+__all__ = ["WorkerProcesses", "available_cores"]
