@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from hypothesis import given, strategies as st
 from opening import is_finished, reopened
 
-from evoframe import EvoframeError, InputError, Plugins, Run, load_config, load_run, run
+from evoframe import EvoframeError, InputError, Run, discover, load_config, load_run, run
 from evoframe.cli import cli
 from evoframe.evolution.assembly import assemble
 from evoframe.record.champion import read_champion
@@ -36,7 +36,7 @@ def directory(finished: Run, tmp_path: Path) -> Path:
     "name", ["run.lock", "run.db", "run.db-wal", "config.toml", "champion.json", ".champion.json.new", "x"]
 )
 def reopen(directory: Path) -> None:
-    reopened(directory, Plugins())
+    reopened(directory, discover())
 
 
 @pytest.mark.parametrize("use", [load_run, is_finished, reopen])
