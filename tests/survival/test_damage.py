@@ -128,7 +128,7 @@ def test_what_is_damaged_is_not_resumed(intact: Run, tmp_path: Path) -> None:
         database.execute("UPDATE pairs SET score = 1.0 WHERE turn = 3 AND pair = 1")
     database.close()
     with pytest.raises(InputError, match="is damaged: pairs"):
-        reopened(tmp_path / "run", Plugins())
+        reopen(tmp_path / "run")
 
 
 def test_a_table_without_an_end_is_not_read(intact: Run, tmp_path: Path) -> None:

@@ -21,6 +21,10 @@ from evoframe.evolution.assembly import assemble
 from evoframe.record.champion import read_champion
 
 
+def reopen(directory: Path) -> None:
+    reopened(directory, discover())
+
+
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
     config = load_config("quick", overrides=["run.generations=1"])
@@ -35,10 +39,6 @@ def directory(finished: Run, tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     "name", ["run.lock", "run.db", "run.db-wal", "config.toml", "champion.json", ".champion.json.new", "x"]
 )
-def reopen(directory: Path) -> None:
-    reopened(directory, discover())
-
-
 @pytest.mark.parametrize("use", [load_run, is_finished, reopen])
 def test_links_are_not_followed(
     directory: Path, tmp_path: Path, name: str, use: Callable[[Path], object]
