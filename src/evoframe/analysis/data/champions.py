@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import attrs
 
@@ -61,20 +60,18 @@ class ChampionData:
     verification: Verification | None
 
 
-def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
-    """Return what is shown of the champion of the run in *directory*.
+def load_champion(run: Run, plugins: Plugins) -> ChampionData:
+    """Return what is shown of the champion of a run.
 
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
-        InputError: It is no run's directory, has no champion yet, or is damaged.
+        InputError: It has no champion yet, or is damaged.
         ComponentError: What its simulator or an evolver gives cannot be drawn.
     """
-    job = read_job(directory, None, (), plugins, runs=True)
-    run, [design], config = job.run, job.designs, job.config
-    if run is None:
-        raise InputError(f"{directory}: is no run's directory")
+    job = read_job(run.directory, None, (), plugins, runs=True)
+    [design], config = job.designs, job.config
     simulator, objective = config.simulator.component, config.objective.component
-    with naming(directory), blaming("simulator"):
+    with naming(run.directory), blaming("simulator"):
         geometry = checked(simulator.geometry(design, _FRAMES)) if can_be_drawn(simulator) else None
     drawn = geometry.tracks if geometry else {}
     return ChampionData(

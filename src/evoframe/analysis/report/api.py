@@ -1,4 +1,4 @@
-"""The report of a directory: of a run, or of a study."""
+"""Reports of runs and studies: drafted, and written in place of earlier ones."""
 
 from __future__ import annotations
 
@@ -6,58 +6,86 @@ from pathlib import Path
 
 import attrs
 
+from evoframe.analysis.data.studies import load_study
 from evoframe.analysis.output.listing import listed, settle
-from evoframe.analysis.output.writing import Written
-from evoframe.analysis.report.run_report import write_run_report
-from evoframe.analysis.report.study_report import write_study_report
+from evoframe.analysis.output.writing import prepare_directory, write_files
+from evoframe.analysis.report.draft import Draft
+from evoframe.analysis.report.run_report import draft_of_run
+from evoframe.analysis.report.study_report import draft_of_study
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.errors import InputError
 from evoframe.files.reading import is_file
+from evoframe.record.run import Run, load_run
 from evoframe.record.store import CONFIG_FILE
+from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 from evoframe.robustness.files import SETTING_FILE
 from evoframe.study.conduct import STUDY_FILE
 
-__all__ = ["write_report"]
+__all__ = ["Report", "report"]
 
 
-def write_report(directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm") -> Written:
-    """Write the report of a run or a study.
+@attrs.frozen
+class Report:
+    """A report that was written.
 
-    Files of an earlier report in its place that it does not have any more are removed.
+    Attributes:
+        directory: The directory that it was written to.
+        words: Its conclusions, or the state of the run.
+        files: All its files.
+    """
+
+    directory: Path
+    words: str
+    files: tuple[Path, ...]
+
+
+def report(
+    source: Run | str | Path,
+    *,
+    out: str | Path | None = None,
+    correction: Correction = "holm",
+    plugins: Plugins | None = None,
+) -> Report:
+    """Write figures, tables, conclusions and a page of a run or a study, finished or not.
+
+    Files of an earlier report in the same place that are not written again are removed, unless somebody has
+    changed them.
 
     Args:
-        directory: Of a run or a study, finished or not.
-        target: Where to.
-        plugins: The plugins that configurations name.
-        correction: Of the p-values of pairs; ``none`` is what the paper does.
+        source: A run, its directory, or the directory of a study.
+        out: Directory of the report; by default ``report`` in that of the run or study.
+        correction: Correction of pairwise p-values for multiple comparisons; ``none`` is what the paper does.
+        plugins: The plugins that configurations name; by default those that are installed.
 
     Raises:
-        ConfigurationError: The directory cannot be read with these plugins.
-        InputError: It is of neither, has nothing to report yet, or is damaged; or *target* cannot be made, or
-            is a place of something else.
+        ConfigurationError: The source cannot be read with these plugins.
+        InputError: The source is neither a run nor a study, has nothing to report yet, or is damaged; or
+            *out* cannot be created, or is a directory of something else.
+        ComponentError: A simulator or an evolver fails, or returns something that cannot be drawn.
         RunError: The report cannot be written.
     """
-    _refuse_occupied(target)
-    before = listed(target)
-    written = _write(directory, target, plugins, correction)
-    return attrs.evolve(written, files=(*written.files, settle(target, before, written.files)))
-
-
-def _write(directory: Path, target: Path, plugins: Plugins, correction: Correction) -> Written:
-    if is_file(directory / STUDY_FILE):
-        return write_study_report(directory, target, plugins, correction)
-    if is_file(directory / CONFIG_FILE):
-        return write_run_report(directory, target, plugins, correction)
-    raise InputError(
-        f"{directory}: is no directory of a run or a study: there is no {CONFIG_FILE} and no {STUDY_FILE}"
-    )
-
-
-def _refuse_occupied(target: Path) -> None:
-    """Refuse to write between the files of a run, a study or a measurement, some of which have our names."""
-    for name in (CONFIG_FILE, STUDY_FILE, SETTING_FILE):
+    directory = source.directory if isinstance(source, Run) else Path(source)
+    target = directory / "report" if out is None else Path(out)
+    for name in (CONFIG_FILE, STUDY_FILE, SETTING_FILE):  # between those files some would have our names
         if is_file(target / name):
             raise InputError(
                 f"{target}: is no place for a report: it has a {name}; choose another with --out"
             )
+    before = listed(target)
+    draft = _draft(source, directory, plugins or discover(), correction)
+    prepare_directory(target)
+    written = write_files(draft.all_files(), target)
+    return Report(target, draft.words, (*written, settle(target, before, written)))
+
+
+def _draft(source: Run | str | Path, directory: Path, plugins: Plugins, correction: Correction) -> Draft:
+    if isinstance(source, Run):
+        return draft_of_run(source, plugins, correction)
+    if is_file(directory / STUDY_FILE):
+        return draft_of_study(load_study(directory, plugins=plugins), plugins, correction)
+    if is_file(directory / CONFIG_FILE):
+        return draft_of_run(load_run(directory), plugins, correction)
+    raise InputError(
+        f"{directory}: is no directory of a run or a study: there is no {CONFIG_FILE} and no {STUDY_FILE}"
+    )
