@@ -38,8 +38,9 @@ __all__ = [
 
 _MODULES = {"bodies": "figures.bodies", "networks": "figures.networks"}
 
+if not TYPE_CHECKING:  # to a type checker a name that is not there is an error
 
-def __getattr__(name: str) -> ModuleType:
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return importlib.import_module(f"{__name__}.{_MODULES.get(name, name)}")
+    def __getattr__(name: str) -> ModuleType:
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return importlib.import_module(f"{__name__}.{_MODULES.get(name, name)}")
