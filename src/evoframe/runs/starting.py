@@ -1,0 +1,151 @@
+"""Start of a run: its components, and its directory."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from evoframe.config import layers_of, load_config
+from evoframe.contract import RunConfig
+from evoframe.designs import exports
+from evoframe.documents import as_read
+from evoframe.errors import InputError, NotEmptyError, OccupiedError
+from evoframe.evolution import assemble
+from evoframe.files import LOCK_FILE, Lock, acquire_lock, is_leftover, released_on_error, write_atomically
+from evoframe.record import CONFIG_FILE, Run, Store, open_run, provenance_of
+from evoframe.registry import Plugins, discover
+from evoframe.runs.execution import Execution
+
+__all__ = ["opened_store", "prepare", "run"]
+
+
+def run(
+    config: str | Path | RunConfig = "paper",
+    /,
+    *,
+    seed: int | None = None,
+    out: str | Path | None = None,
+    workers: int | None = None,
+    plugins: Plugins | None = None,
+    **settings: Any,
+) -> Run:
+    """Run a configuration to its end and verify its champion, as the command ``evoframe run`` does.
+
+    Args:
+        config: Name of a preset, path of a TOML file, or a configuration from :func:`load_config`.
+        seed: Overrides ``run.seed``.
+        out: The run's directory; by default ``runs/<label>-<seed>``, with a counter if that exists.
+        workers: Overrides ``executor.workers``.
+        plugins: The plugins to choose from, which may observe the run; by default those that are installed.
+        **settings: Further settings by key: ``aggregator="hm"``, ``collaboration={"n": 5}``, or dotted,
+            ``**{"collaboration.n": 5}``.
+
+    Returns:
+        The finished run.
+
+    Raises:
+        ConfigurationError: The configuration cannot be accepted; nothing was run or written.
+        InputError: The directory is not empty, or cannot be written.
+        RunError: The run cannot go on, or its champion cannot be verified; what was saved stays.
+    """
+    plugins = plugins or discover()
+    if not isinstance(config, RunConfig):
+        overrides = layers_of({**settings, "run.seed": seed, "executor.workers": workers})
+        config = load_config(config, overrides=overrides, plugins=plugins)
+    elif settings or seed is not None or workers is not None:
+        raise TypeError("a configuration is complete; give settings to load_config")
+    execution = prepare(config, plugins, None if out is None else Path(out))
+    finished = execution.play()
+    execution.verify(finished)
+    return finished
+
+
+def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Execution:
+    """Start the components of a configuration, and make the directory of its run.
+
+    Args:
+        config: What to run.
+        plugins: Those that may observe it, apart from those that the configuration blocks.
+        out: The run's directory, missing or empty; by default ``runs/<label>-<seed>``, with a counter if
+            that exists.
+
+    Raises:
+        ConfigurationError: A component refuses to start; there is no directory then.
+        OccupiedError: The directory holds a run, perhaps one that another process has just begun.
+        InputError: It is not empty, or cannot be made.
+    """
+    usable = plugins.without(config.plugins.block)
+    coevolution = assemble(config)
+    try:
+        directory = _default_directory(config) if out is None else _given_directory(out)
+        tables = as_read({**config.tables(), "provenance": provenance_of(config)})
+        return Execution(config, usable, directory, tables, coevolution, _new_store(directory, config, tables))
+    except BaseException:
+        coevolution.close()
+        raise
+
+
+def _new_store(directory: Path, config: RunConfig, tables: Mapping[str, Any]) -> Store:
+    lock = acquire_lock(directory)
+    with released_on_error(lock):
+        _refuse_occupied(directory)  # again: another process may have been faster
+        write_atomically(directory / CONFIG_FILE, tomli_w.dumps(tables).encode())
+        store = opened_store(directory, config, lock)
+        store.begin(list(config.populations), config.deciding())
+        return store
+
+
+def opened_store(directory: Path, config: RunConfig, lock: Lock) -> Store:
+    """Return the store of a run's directory, whose database is new or has what was saved so far.
+
+    Raises:
+        InputError: It cannot be written.
+    """
+    export = functools.partial(exports, config.simulator.component)
+    return Store.open(directory, config.simulation(), lock, export)
+
+
+def _default_directory(config: RunConfig) -> Path:
+    """Make a directory that was not there before, so that runs which start together do not meet in one."""
+    base = Path("runs") / f"{config.label}-{config.run.seed}"
+    counted = (base.with_name(f"{base.name}-{number}") for number in itertools.count(2))
+    for directory in itertools.chain([base], counted):
+        try:
+            directory.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise InputError(f"{directory}: cannot be made: {error.strerror}") from error
+        return directory
+    raise AssertionError  # the counter has no end
+
+
+def _given_directory(directory: Path) -> Path:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+    _refuse_occupied(directory)
+    return directory
+
+
+def _refuse_occupied(directory: Path) -> None:
+    try:
+        names = {path.name for path in directory.iterdir() if not is_leftover(path)} - {LOCK_FILE}
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+    if CONFIG_FILE in names:
+        with open_run(directory) as there:
+            finished = there.begun and there.finished()
+        what = "holds a finished run" if finished else "holds a run that is not finished"
+        todo = "" if finished else f"; to go on with it: evoframe resume {directory}"
+        raise OccupiedError(
+            f"{directory}: is not empty: it {what}; choose another directory with --out{todo}"
+        )
+    if names:
+        raise NotEmptyError(f"{directory}: is not empty; choose another directory with --out")
