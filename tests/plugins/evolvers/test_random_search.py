@@ -84,5 +84,5 @@ def test_a_run_saved_after_every_turn_is_the_uninterrupted_one(mutations: int) -
 
 def test_the_state_of_another_evolver_is_refused() -> None:
     state = Neat().start(3, 2, 25, np.random.default_rng(0)).state()
-    with pytest.raises(ValueError, match="the state is one of 'neat', not of 'random'"):
+    with pytest.raises(ValueError, match=r'state\.evolver: expected one of "random", found "neat"'):
         start().restore(state)
