@@ -360,7 +360,7 @@ def test_a_damaged_state_is_refused_and_changes_nothing(damage: Any) -> None:
 
 @pytest.mark.parametrize("state", [None, 3, "x", []])
 def test_a_state_must_be_a_table(state: Any) -> None:
-    with pytest.raises(StructureError, match="^state: expected a table, found "):
+    with pytest.raises(StructureError, match=r"^state: expected a table, found "):
         start().restore(state)
 
 
