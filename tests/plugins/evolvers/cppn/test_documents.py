@@ -149,6 +149,6 @@ def test_a_known_activation_is_accepted(name: str) -> None:
 
 def test_an_unknown_activation_is_refused_with_the_known_ones() -> None:
     with pytest.raises(
-        ValueError, match=r"unknown activation 'sinus'; did you mean 'sin'\. known: sigmoid, tanh"
+        ValueError, match=r"unknown activation 'sinus'; did you mean 'sin'\? known: sigmoid, tanh"
     ):
         known_activation(None, None, "sinus")
