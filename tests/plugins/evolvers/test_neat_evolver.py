@@ -14,7 +14,7 @@ from processes import python
 
 from evoframe import StructureError
 from evoframe.testing import EvolverContract
-from evoframe_evolvers import Neat, evoframe_evolvers
+from evoframe_evolvers import Neat
 from evoframe_evolvers.cppn.documents import dump_genome
 from evoframe_evolvers.cppn.genomes import GenePool
 from evoframe_evolvers.neat_evolver import _selection
@@ -44,10 +44,6 @@ def turn(run: Any) -> list[Any]:
     genomes = run.ask()
     run.tell(np.array(fitness_of(genomes)), {})
     return [run.dump(genome) for genome in genomes]
-
-
-def test_it_is_offered_by_name() -> None:
-    assert evoframe_evolvers()["neat"] is Neat
 
 
 def test_genomes_begin_as_in_the_paper() -> None:

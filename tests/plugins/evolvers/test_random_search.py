@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from evoframe.testing import EvolverContract
-from evoframe_evolvers import Neat, RandomSearch, evoframe_evolvers
+from evoframe_evolvers import Neat, RandomSearch
 
 
 class TestContract(EvolverContract):
@@ -24,10 +24,6 @@ def turn(run: Any, fitness: float = 0.0) -> list[Any]:
     genomes = run.ask()
     run.tell(np.full(len(genomes), fitness), {})
     return [run.dump(genome) for genome in genomes]
-
-
-def test_it_is_offered_by_name() -> None:
-    assert evoframe_evolvers()["random"] is RandomSearch
 
 
 def test_the_first_turn_is_that_of_neat() -> None:
