@@ -98,7 +98,9 @@ class _InThreads:
         """Return the result of a task whose predecessors are done, so that a thread begins it if none has."""
         if self._limit is not None:
             task.begun.wait()
-            done, _ = concurrent.futures.wait([task.future], max(0.0, task.since + self._limit - _now()))
+            done, _ = concurrent.futures.wait(
+                [task.future], max(0.0, task.since + self._limit - time.monotonic())
+            )
             if not done:
                 self._pool.abandoned = True
                 raise WorkerError(overdue(self._limit), task.item)
@@ -106,9 +108,6 @@ class _InThreads:
 
     def close(self) -> None:
         self._pool.close()
-
-
-_now = time.monotonic
 
 
 class _Batch(Generic[T, R]):
@@ -146,7 +145,7 @@ class _Task(Generic[T, R]):
             self.future.cancel()
         if not self.future.set_running_or_notify_cancel():
             return
-        self.since = _now()
+        self.since = time.monotonic()
         self.begun.set()
         try:
             result = self._batch.function(self.item)

@@ -178,8 +178,49 @@ def _neat_config(sections: Sections) -> Any:
         )
 
 
+def _number_keys(name: str, options: GeneOptions) -> Mapping[str, Any]:
+    return {
+        f"{name}_init_type": "gaussian",
+        f"{name}_init_mean": options.init_mean,
+        f"{name}_init_stdev": options.init_stdev,
+        f"{name}_min_value": options.minimum,
+        f"{name}_max_value": options.maximum,
+        f"{name}_mutate_power": options.mutate_power,
+        f"{name}_mutate_rate": options.mutate_rate,
+        f"{name}_replace_rate": options.replace_rate,
+    }
+
+
+_ALWAYS_1 = GeneOptions(
+    init_mean=1.0,
+    init_stdev=0.0,
+    minimum=1.0,
+    maximum=1.0,
+    mutate_power=0.0,
+    mutate_rate=0.0,
+    replace_rate=0.0,
+)
+
+_FIXED: Mapping[str, Any] = {
+    "num_hidden": 0,
+    "feed_forward": True,
+    "initial_connection": "full_direct",
+    "single_structural_mutation": False,
+    "structural_mutation_surer": False,
+    "activation_default": "random",
+    "aggregation_default": "sum",
+    "aggregation_options": "sum",
+    "aggregation_mutate_rate": 0.0,
+    "enabled_default": True,
+    "enabled_rate_to_true_add": 0.0,
+    "enabled_rate_to_false_add": 0.0,
+    **_number_keys("response", _ALWAYS_1),
+    **_number_keys("time_constant", _ALWAYS_1),
+}
+
+
 def neat_sections(options: GenomeOptions, selection: Sections, inputs: int, outputs: int) -> Sections:
-    """Return all that is written for neat-python, which says nothing of a key that it does not know."""
+    """Return the whole configuration for neat-python, which ignores keys that it does not know."""
     return {
         **selection,
         "NEAT": {
@@ -191,67 +232,17 @@ def neat_sections(options: GenomeOptions, selection: Sections, inputs: int, outp
         },
         "DefaultGenome": {
             **selection["DefaultGenome"],
+            **_FIXED,
             "num_inputs": inputs,
             "num_outputs": outputs,
-            **_fixed_keys(),
-            **_option_keys(options),
+            "conn_add_prob": options.connection_add,
+            "conn_delete_prob": options.connection_delete,
+            "node_add_prob": options.node_add,
+            "node_delete_prob": options.node_delete,
+            "activation_options": " ".join(options.activations),
+            "activation_mutate_rate": options.activation_mutate_rate,
+            "enabled_mutate_rate": options.enabled_mutate_rate,
+            **_number_keys("bias", options.bias),
+            **_number_keys("weight", options.weight),
         },
-    }
-
-
-def _option_keys(options: GenomeOptions) -> Mapping[str, Any]:
-    return {
-        "conn_add_prob": options.connection_add,
-        "conn_delete_prob": options.connection_delete,
-        "node_add_prob": options.node_add,
-        "node_delete_prob": options.node_delete,
-        "activation_options": " ".join(options.activations),
-        "activation_mutate_rate": options.activation_mutate_rate,
-        "enabled_mutate_rate": options.enabled_mutate_rate,
-        **_number_keys("bias", options.bias),
-        **_number_keys("weight", options.weight),
-    }
-
-
-def _fixed_keys() -> Mapping[str, Any]:
-    return {
-        "num_hidden": 0,
-        "feed_forward": True,
-        "initial_connection": "full_direct",
-        "single_structural_mutation": False,
-        "structural_mutation_surer": False,
-        "activation_default": "random",
-        "aggregation_default": "sum",
-        "aggregation_options": "sum",
-        "aggregation_mutate_rate": 0.0,
-        "enabled_default": True,
-        "enabled_rate_to_true_add": 0.0,
-        "enabled_rate_to_false_add": 0.0,
-        **_number_keys("response", _fixed_at(1.0)),
-        **_number_keys("time_constant", _fixed_at(1.0)),
-    }
-
-
-def _fixed_at(value: float) -> GeneOptions:
-    return GeneOptions(
-        init_mean=value,
-        init_stdev=0.0,
-        minimum=value,
-        maximum=value,
-        mutate_power=0.0,
-        mutate_rate=0.0,
-        replace_rate=0.0,
-    )
-
-
-def _number_keys(name: str, options: GeneOptions) -> Mapping[str, Any]:
-    return {
-        f"{name}_init_type": "gaussian",
-        f"{name}_init_mean": options.init_mean,
-        f"{name}_init_stdev": options.init_stdev,
-        f"{name}_min_value": options.minimum,
-        f"{name}_max_value": options.maximum,
-        f"{name}_mutate_power": options.mutate_power,
-        f"{name}_mutate_rate": options.mutate_rate,
-        f"{name}_replace_rate": options.replace_rate,
     }
