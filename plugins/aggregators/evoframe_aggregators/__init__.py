@@ -104,7 +104,9 @@ class WeightedMean:
         values = _ascending(scores)[::-1]
         weights = self._weights(len(values))
         if len(weights) < len(values):
-            values = [(larger + smaller) / 2 for larger, smaller in _pairs(values)]
+            values = [
+                (larger + smaller) / 2 for larger, smaller in zip(values[::2], values[1::2], strict=True)
+            ]
         mean = math.fsum(weight * value for weight, value in zip(weights, values, strict=True))
         return _between(values[-1], mean, values[0])
 
@@ -119,17 +121,13 @@ class WeightedMean:
             return self.weights
         weights = PAPER_WEIGHTS.get(FOLDED.get(n, n) if self.fold else n)
         if weights is None:
-            raise ConfigurationError(_no_weights(n))
+            paper = ", ".join(str(count) for count in PAPER_WEIGHTS)
+            advice = " or aggregator.fold = true" if n in FOLDED else ""
+            raise ConfigurationError(
+                f"wm has no weights for {_count(n, 'collaborator')} (the paper gives {paper}); "
+                f"set aggregator.weights{advice}"
+            )
         return weights
-
-
-def _no_weights(n: int) -> str:
-    paper = ", ".join(str(count) for count in PAPER_WEIGHTS)
-    advice = " or aggregator.fold = true" if n in FOLDED else ""
-    return (
-        f"wm has no weights for {_count(n, 'collaborator')} (the paper gives {paper}); "
-        f"set aggregator.weights{advice}"
-    )
 
 
 @attrs.frozen
@@ -217,10 +215,6 @@ def _ascending(scores: Scores) -> list[float]:
         if not math.isfinite(value):
             raise ValueError(f"scores must be finite, found {value}")
     return values
-
-
-def _pairs(values: list[float]) -> zip[tuple[float, float]]:
-    return zip(values[::2], values[1::2], strict=True)
 
 
 def _between(smallest: float, mean: float, largest: float) -> float:

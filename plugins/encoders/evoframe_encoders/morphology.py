@@ -93,15 +93,13 @@ class CppnMorphology:
         body = np.full(self.canvas, PASSIVE, dtype=np.uint8)
         drawn = body[_drawn(self.enclosure)]
         points = _points(self.canvas, self.normalized_coordinates, self.enclosure)
-        drawn[:] = self._materials(network(points)).reshape(drawn.shape)
+        present, contractile = (np.abs(network(points)) >= self.threshold).T
+        materials = np.where(present, np.where(contractile, CONTRACTILE, PASSIVE), EMPTY)
+        drawn[:] = materials.reshape(drawn.shape)
         if self.connected:
             body = _largest_part(body)
         body.setflags(write=False)
         return design.with_role(MORPHOLOGY, body)
-
-    def _materials(self, outputs: NDArray[np.float64]) -> NDArray[np.int64]:
-        present, contractile = (np.abs(outputs) >= self.threshold).T
-        return np.where(present, np.where(contractile, CONTRACTILE, PASSIVE), EMPTY)
 
 
 def _largest_part(body: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import attrs
 import neat
@@ -13,12 +13,20 @@ from attrs.validators import ge, in_
 from neat.reporting import ReporterSet
 from neat.species import Species
 
-from evoframe import ConfigurationError
-from evoframe_evolvers.cppn.checked import entry, number, rows, whole, wholes
-from evoframe_evolvers.cppn.cohort import Cohort
-from evoframe_evolvers.cppn.genomes import Counter, GenePool, Sections
-from evoframe_evolvers.cppn.network_run import NetworkRun
-from evoframe_evolvers.cppn.options import GenomeOptions, at_least, finite, probability
+from evoframe import ConfigurationError, structure
+from evoframe_evolvers.cppn import (
+    Cohort,
+    Counter,
+    GenePool,
+    GenomeOptions,
+    NetworkRun,
+    SavedCohort,
+    SavedPool,
+    Sections,
+    at_least,
+    finite,
+    probability,
+)
 from evoframe_evolvers.crowding import ExactReproduction, RoomyStagnation
 
 __all__ = ["Neat", "NeatRun"]
@@ -97,6 +105,27 @@ def _selection(options: Neat) -> Sections:
     }
 
 
+@attrs.frozen
+class _SavedSpecies:
+    id: int = attrs.field(validator=ge(1))
+    created: int = attrs.field(validator=ge(0))
+    last_improved: int = attrs.field(validator=ge(0))
+    representative: int
+    members: tuple[int, ...]
+    fitness: float | None
+    adjusted_fitness: float | None
+    best_fitness: float | None
+
+
+@attrs.frozen
+class _SavedRun:
+    evolver: Literal["neat"]
+    pool: SavedPool
+    cohort: SavedCohort
+    next_species: int = attrs.field(validator=ge(1))
+    species: tuple[_SavedSpecies, ...]
+
+
 class NeatRun(NetworkRun):
     """NEAT at work on one population."""
 
@@ -153,13 +182,13 @@ class NeatRun(NetworkRun):
         Raises:
             ValueError: It is not the state of such a population; this one stays as it is.
         """
-        cohort = self._saved_cohort(state, "neat")
-        species = [_load_species(saved, cohort.genomes) for saved in rows(state, "species")]
-        next_species = whole(state, "next_species", 1)
-        _check_partition(species, cohort.genomes, next_species)
-        self._pool.restore(entry(state, "pool", dict), cohort.genomes.values())
+        saved = structure(state, _SavedRun, ("state",))
+        cohort = self._saved_cohort(saved.cohort)
+        species = [_load_species(kind, cohort.genomes) for kind in saved.species]
+        _check_partition(species, cohort.genomes, saved.next_species)
+        self._pool.restore(saved.pool, cohort.genomes.values())
         self._cohort = cohort
-        self._species_set.indexer.value = next_species
+        self._species_set.indexer.value = saved.next_species
         self._species_set.species = {kind.key: kind for kind in species}
         self._species_set.genome_to_species = {key: kind.key for kind in species for key in kind.members}
 
@@ -178,24 +207,16 @@ def _dump_species(species: Any) -> dict[str, Any]:
     }
 
 
-def _load_species(saved: Any, genomes: Mapping[int, Any]) -> Any:
-    species = Species(whole(saved, "id", 1), whole(saved, "created", 0))
-    species.last_improved = whole(saved, "last_improved", 0)
-    keys = wholes(saved, "members")
-    representative = whole(saved, "representative")
-    strangers = [key for key in (representative, *keys) if key not in genomes]
-    if strangers:
-        raise ValueError(f"species {species.key} has a member {strangers[0]!r} that is not in the population")
-    species.update(genomes[representative], {key: genomes[key] for key in keys})
-    species.fitness = _number_or_none(saved, "fitness")
-    species.adjusted_fitness = _number_or_none(saved, "adjusted_fitness")
-    best = _number_or_none(saved, "best_fitness")
-    species.fitness_history = [] if best is None else [best]
+def _load_species(saved: _SavedSpecies, genomes: Mapping[int, Any]) -> Any:
+    for key in (saved.representative, *saved.members):
+        if key not in genomes:
+            raise ValueError(f"species {saved.id} has a member {key} that is not in the population")
+    species = Species(saved.id, saved.created)
+    species.last_improved = saved.last_improved
+    species.update(genomes[saved.representative], {key: genomes[key] for key in saved.members})
+    species.fitness, species.adjusted_fitness = saved.fitness, saved.adjusted_fitness
+    species.fitness_history = [] if saved.best_fitness is None else [saved.best_fitness]
     return species
-
-
-def _number_or_none(saved: Any, key: str) -> float | None:
-    return None if entry(saved, key, object) is None else number(saved, key)
 
 
 def _check_partition(species: Sequence[Any], genomes: Mapping[int, Any], next_species: int) -> None:

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import random
-from typing import Any
+from typing import Any, Literal
 
 import attrs
 import neat
 import numpy as np
 
-from evoframe import ConfigurationError
-from evoframe_evolvers.cppn.checked import entry
-from evoframe_evolvers.cppn.cohort import Cohort
-from evoframe_evolvers.cppn.genomes import NO_SELECTION, GenePool
-from evoframe_evolvers.cppn.network_run import NetworkRun
-from evoframe_evolvers.cppn.options import GenomeOptions, at_least
+from evoframe import ConfigurationError, structure
+from evoframe_evolvers.cppn import (
+    NO_SELECTION,
+    Cohort,
+    GenePool,
+    GenomeOptions,
+    NetworkRun,
+    SavedCohort,
+    SavedPool,
+    at_least,
+)
 
 __all__ = ["RandomSearch", "RandomSearchRun"]
 
@@ -41,6 +46,13 @@ class RandomSearch(GenomeOptions):
         """Begin to draw *size* genomes a turn that express networks with *inputs* and *outputs*."""
         self.check(size)
         return RandomSearchRun(GenePool(self, NO_SELECTION, inputs, outputs, rng), size, self.mutations)
+
+
+@attrs.frozen
+class _SavedRun:
+    evolver: Literal["random"]
+    pool: SavedPool
+    cohort: SavedCohort
 
 
 class RandomSearchRun(NetworkRun):
@@ -83,6 +95,7 @@ class RandomSearchRun(NetworkRun):
         Raises:
             ValueError: It is not the state of such a population; this one stays as it is.
         """
-        cohort = self._saved_cohort(state, "random")
-        self._pool.restore(entry(state, "pool", dict), cohort.genomes.values())
+        saved = structure(state, _SavedRun, ("state",))
+        cohort = self._saved_cohort(saved.cohort)
+        self._pool.restore(saved.pool, cohort.genomes.values())
         self._cohort = cohort

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import concurrent.futures
+import contextlib
 import math
 import queue
 import threading
 import time
 from collections.abc import Callable, Iterable
-from concurrent.futures import CancelledError, Future
-from typing import Any, Generic, TypeAlias, TypeVar
+from concurrent.futures import Future
+from typing import Any, Generic, TypeVar
 
 import attrs
 
@@ -62,37 +63,33 @@ class _InThreads:
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
         if self._pool.abandoned:
             self._pool = self._new_pool()
-        tasks: list[_Task[T, R]] = []
+        batch = _Batch(function)
         try:
-            self._hand_out(_Watched(function), items, tasks)
-            return [self._result(task) for task in tasks]
+            self._hand_out(batch, items)
+            return [self._result(task) for task in batch.tasks]
         except (KeyboardInterrupt, SystemExit):
             self._pool.abandoned = True  # whoever wants to leave now does not wait for the others
             raise
         finally:
-            for task in tasks:
-                task.future.cancel()  # what no thread has begun
+            for task in batch.tasks:
+                task.future.cancel()  # unless a thread has begun it
             if not self._pool.abandoned:
                 # Nothing goes on behind the caller's back.
-                concurrent.futures.wait([task.future for task in tasks])
+                concurrent.futures.wait([task.future for task in batch.tasks])
 
-    def _hand_out(self, function: _Watched[T, R], items: Iterable[T], tasks: list[_Task[T, R]]) -> None:
+    def _hand_out(self, batch: _Batch[T, R], items: Iterable[T]) -> None:
         """Let the threads begin with an item while the next is made; then help, until one has failed."""
         try:
             for item in items:
-                task: _Task[T, R] = _Task(item)
-                tasks.append(task)
-                self._pool.give(task, function)
-                if function.failed.is_set():
+                self._pool.give(batch.add(item))
+                if batch.failed < math.inf:
                     return
         except Exception:
-            for task in tasks:
+            for task in batch.tasks:
                 self._result(task)  # an item before the one that could not be made may have failed
             raise
         if self._limit is None:
-            for task in tasks:
-                task.work(function)
-                task.pass_interrupt_on()
+            self._pool.help()
 
     def _new_pool(self) -> _Pool:
         return _Pool(self.workers - 1 if self._limit is None else self.workers)
@@ -101,7 +98,9 @@ class _InThreads:
         """Return the result of a task whose predecessors are done, so that a thread begins it if none has."""
         if self._limit is not None:
             task.begun.wait()
-            done, _ = concurrent.futures.wait([task.future], max(0.0, task.since + self._limit - _now()))
+            done, _ = concurrent.futures.wait(
+                [task.future], max(0.0, task.since + self._limit - time.monotonic())
+            )
             if not done:
                 self._pool.abandoned = True
                 raise WorkerError(overdue(self._limit), task.item)
@@ -111,65 +110,52 @@ class _InThreads:
         self._pool.close()
 
 
-_now = time.monotonic
-
-
-class _Watched(Generic[T, R]):
-    """A function that remembers whether it has failed, and then does nothing any more.
-
-    Items are begun in their order: what has not begun when one fails stands after it.
-    """
+class _Batch(Generic[T, R]):
+    """The tasks of one call, in the order of their items."""
 
     def __init__(self, function: Callable[[T], R]) -> None:
-        self.failed = threading.Event()
-        self._function = function
+        self.function = function
+        self.tasks: list[_Task[T, R]] = []
+        self.failed = math.inf  # the place of a task that has failed; those behind it need not begin
 
-    def __call__(self, item: T) -> R:
-        if self.failed.is_set():
-            raise CancelledError
-        try:
-            return self._function(item)
-        except BaseException:
-            self.failed.set()
-            raise
+    def add(self, item: T) -> _Task[T, R]:
+        task = _Task(self, len(self.tasks), item)
+        self.tasks.append(task)
+        return task
 
 
 class _Task(Generic[T, R]):
-    """An item, when work on it began, and what becomes of it."""
+    """An item, when work on it began, and its result."""
 
-    def __init__(self, item: T) -> None:
+    def __init__(self, batch: _Batch[T, R], place: int, item: T) -> None:
         self.item = item
         self.begun = threading.Event()
         self.since = math.inf
         self.future: Future[R] = Future()
-        self._lock = threading.Lock()
+        self._batch = batch
+        self._place = place
 
-    def work(self, function: Callable[[T], R]) -> None:
-        """Work on the item in this thread, unless another has begun."""
-        if not self._begin():
+    def work(self) -> None:
+        """Work on the item in this thread, unless it is no longer wanted.
+
+        Raises:
+            KeyboardInterrupt: So did the work; the future has it too.
+        """
+        if self._batch.failed < self._place:
+            self.future.cancel()
+        if not self.future.set_running_or_notify_cancel():
             return
+        self.since = time.monotonic()
+        self.begun.set()
         try:
-            result = function(self.item)
-        except BaseException as error:  # noqa: BLE001 - raised where the results are asked for
+            result = self._batch.function(self.item)
+        except BaseException as error:
+            self._batch.failed = min(self._batch.failed, self._place)
             self.future.set_exception(error)
+            if isinstance(error, KeyboardInterrupt):
+                raise
         else:
             self.future.set_result(result)
-
-    def pass_interrupt_on(self) -> None:
-        """Raise now what came of a Ctrl-C while this thread worked on the item."""
-        if self.future.done() and isinstance(error := self.future.exception(), KeyboardInterrupt):
-            raise error
-
-    def _begin(self) -> bool:
-        with self._lock:  # a future's own state raises an error, and logs it, at a second beginning
-            if self.begun.is_set() or not self.future.set_running_or_notify_cancel():
-                return False
-            self.since = _now()
-            self.begun.set()
-            return True
-
-
-_Order: TypeAlias = tuple[_Task[Any, Any], Callable[[Any], Any]]
 
 
 class _Pool:
@@ -180,24 +166,30 @@ class _Pool:
 
     def __init__(self, size: int) -> None:
         self.abandoned = False
-        self._orders: queue.SimpleQueue[_Order | None] = queue.SimpleQueue()
+        self._tasks: queue.SimpleQueue[_Task[Any, Any] | None] = queue.SimpleQueue()
         self._threads = [
             threading.Thread(target=self._serve, name=f"evoframe-{i}", daemon=True) for i in range(size)
         ]
         for thread in self._threads:
             thread.start()
 
-    def give(self, task: _Task[T, R], function: Callable[[T], R]) -> None:
-        self._orders.put((task, function))
+    def give(self, task: _Task[Any, Any]) -> None:
+        self._tasks.put(task)
+
+    def help(self) -> None:
+        """Work in this thread too, until all tasks have begun or a Ctrl-C comes."""
+        with contextlib.suppress(queue.Empty):
+            while (task := self._tasks.get_nowait()) is not None:
+                task.work()
 
     def close(self) -> None:
         for _ in self._threads:
-            self._orders.put(None)
+            self._tasks.put(None)
         if not self.abandoned:
             for thread in self._threads:
                 thread.join()
 
     def _serve(self) -> None:
-        while (order := self._orders.get()) is not None:
-            task, function = order
-            task.work(function)
+        while (task := self._tasks.get()) is not None:
+            with contextlib.suppress(KeyboardInterrupt):  # is for the thread that asks
+                task.work()

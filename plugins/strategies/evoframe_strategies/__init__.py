@@ -6,7 +6,7 @@ A member with a diverged simulation is chosen only when no clean member is left.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import attrs
 import numpy as np
@@ -117,25 +117,23 @@ def _available(n: int, n_members: int, times: int = 1) -> int:
 
 
 def _best_first(members: Sequence[Member]) -> list[int]:
-    return _ranked(members, lambda fitness: -fitness)
+    return _ranked(members, -1.0)
 
 
 def _worst_first(members: Sequence[Member]) -> list[int]:
-    return _ranked(members, lambda fitness: fitness)
+    return _ranked(members, 1.0)
 
 
-def _ranked(members: Sequence[Member], key: Callable[[float], float]) -> list[int]:
-    """Return the indices of *members* by *key* of their fitness, those that diverged last, ties by index."""
-    fitness = [_known_fitness(member) for member in members]
-    return sorted(range(len(members)), key=lambda i: (members[i].diverged, key(fitness[i]), i))
-
-
-def _known_fitness(member: Member) -> float:
-    if member.fitness is None:
-        raise ValueError(f"member {member.id} has no fitness yet, so it cannot be ranked")
-    if math.isnan(member.fitness):
-        raise ValueError(f"the fitness of member {member.id} is NaN, so it cannot be ranked")
-    return member.fitness
+def _ranked(members: Sequence[Member], sign: float) -> list[int]:
+    """Return the indices of *members* by *sign* times fitness, those that diverged last, ties by index."""
+    ranks = []
+    for index, member in enumerate(members):
+        if member.fitness is None:
+            raise ValueError(f"member {member.id} has no fitness yet, so it cannot be ranked")
+        if math.isnan(member.fitness):
+            raise ValueError(f"the fitness of member {member.id} is NaN, so it cannot be ranked")
+        ranks.append((member.diverged, sign * member.fitness, index))
+    return [index for _, _, index in sorted(ranks)]
 
 
 def _indices(indices: Iterable[int]) -> Indices:

@@ -7,7 +7,7 @@ from hypothesis import given, strategies as st
 
 from evoframe import Design
 from evoframe.testing import EncoderContract
-from evoframe_encoders import CppnController, CppnMorphology, evoframe_encoders
+from evoframe_encoders import CppnMorphology
 
 CANVASES = st.tuples(st.integers(1, 7), st.integers(1, 5), st.integers(1, 5))
 SCALES = st.sampled_from([0.0, 1e-3, 0.1, 1.0, 1e50])
@@ -47,10 +47,6 @@ def one_by_one(encoder: CppnMorphology, network: Any) -> Any:
         if abs(presence) >= encoder.threshold:
             body[index] = 3 if abs(material) >= encoder.threshold else 1
     return body
-
-
-def test_they_are_offered_by_name() -> None:
-    assert evoframe_encoders() == {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}
 
 
 def test_the_defaults_are_the_papers() -> None:

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from processes import python
 
+from evoframe import StructureError
 from evoframe.testing import EvolverContract
-from evoframe_evolvers import Neat, evoframe_evolvers
+from evoframe_evolvers import Neat
 from evoframe_evolvers.cppn.documents import dump_genome
 from evoframe_evolvers.cppn.genomes import GenePool
 from evoframe_evolvers.neat_evolver import _selection
@@ -43,10 +44,6 @@ def turn(run: Any) -> list[Any]:
     genomes = run.ask()
     run.tell(np.array(fitness_of(genomes)), {})
     return [run.dump(genome) for genome in genomes]
-
-
-def test_it_is_offered_by_name() -> None:
-    assert evoframe_evolvers()["neat"] is Neat
 
 
 def test_genomes_begin_as_in_the_paper() -> None:
@@ -357,10 +354,50 @@ def test_a_damaged_state_is_refused_and_changes_nothing(damage: Any) -> None:
     assert other.state() == before
 
 
-@pytest.mark.parametrize("state", [None, 3, "x", [], {}])
-def test_what_is_no_state_is_refused(state: Any) -> None:
-    with pytest.raises(ValueError, match="'evolver' is missing"):
+@pytest.mark.parametrize("state", [None, 3, "x", []])
+def test_a_state_must_be_a_table(state: Any) -> None:
+    with pytest.raises(StructureError, match=r"^state: expected a table, found "):
         start().restore(state)
+
+
+def test_every_key_of_a_state_must_be_there_and_no_other() -> None:
+    state = start().state()
+    keys = list(state)
+    for key in keys:
+        with pytest.raises(StructureError, match=f"^state.{key}: is missing$"):
+            start().restore({other: state[other] for other in keys if other != key})
+    with pytest.raises(StructureError, match=r"^state\.colour: unknown option"):
+        start().restore(state | {"colour": 1})
+
+
+def test_all_faults_of_a_state_are_named_with_their_places() -> None:
+    state = start().state()
+    put("lost", "cohort", "phase")(state)
+    put(0, "species", 0, "id")(state)
+    put(1.5, "pool", "innovation")(state)
+    with pytest.raises(StructureError) as caught:
+        start().restore(state)
+    assert [(".".join(fault.path), fault.message) for fault in caught.value.faults] == [
+        ("state.pool.innovation", "expected a whole number, found 1.5"),
+        ("state.cohort.phase", 'expected one of "new", "asked", "told", found "lost"'),
+        ("state.species[0].id", "must be >= 1, found 0"),
+    ]
+
+
+def test_a_fault_of_a_genome_is_named_with_its_place() -> None:
+    state = start().state()
+    put("1", *LINK, "weight")(state)
+    place = r"^state\.cohort\.members\[0\]\.genome\.connections\[0\]\.weight: expected a number"
+    with pytest.raises(StructureError, match=place):
+        start().restore(state)
+
+
+def test_ids_in_use_are_not_given_again() -> None:
+    for key in ("next_genome", "next_node"):
+        state = start().state()
+        state["pool"][key] -= 1
+        with pytest.raises(ValueError, match=rf"^state\.pool\.{key}: must be > {state['pool'][key]}, found "):
+            start().restore(state)
 
 
 @pytest.mark.parametrize("other", [(4, 2, 25), (3, 1, 25), (3, 3, 25), (3, 2, 24)])

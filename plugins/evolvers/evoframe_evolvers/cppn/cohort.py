@@ -1,21 +1,37 @@
-"""The genomes that an evolver asked about last, and what it was told of them."""
+"""The present generation: its genomes, their ages and their fitness."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal
 
 import attrs
 import numpy as np
+from attrs.validators import ge
 from numpy.typing import NDArray
 
 from evoframe import Member
-from evoframe_evolvers.cppn.checked import entry, number, rows, whole
 
-__all__ = ["Cohort"]
+__all__ = ["Cohort", "SavedCohort"]
 
 FITNESS_LIMIT = 1e100
 """neat-python adds and subtracts fitnesses without a thought of overflow."""
+
+
+@attrs.frozen
+class _SavedMember:
+    born: int = attrs.field(validator=ge(0))
+    fitness: float | None
+    genome: Any
+
+
+@attrs.frozen
+class SavedCohort:
+    """The document that :meth:`Cohort.state` returns."""
+
+    generation: int = attrs.field(validator=ge(0))
+    phase: Literal["new", "asked", "told"]
+    members: tuple[_SavedMember, ...]
 
 
 @attrs.define
@@ -101,34 +117,29 @@ class Cohort:
         }
 
     @classmethod
-    def from_state(cls, state: Any, size: int, load: Callable[[Any], Any]) -> Cohort:
-        """Return the cohort of *size* that :meth:`state` was taken of.
+    def from_state(cls, saved: SavedCohort, genomes: Sequence[Any], size: int) -> Cohort:
+        """Return the cohort that :meth:`state` was taken of.
+
+        Args:
+            saved: The document.
+            genomes: The genomes of its members, in their order.
+            size: Number of members of the population.
 
         Raises:
-            ValueError: It is no such state.
+            ValueError: The members are not such a population, or contradict each other.
         """
-        saved = rows(state, "members")
-        genomes = [load(entry(member, "genome", dict)) for member in saved]
-        cohort = cls({genome.key: genome for genome in genomes}, whole(state, "generation", 0))
-        if len(saved) != size or len(cohort.genomes) != size:
-            raise ValueError(f"expected {size} different genomes, got {len(cohort.genomes)} of {len(saved)}")
-        for genome, member in zip(genomes, saved, strict=True):
-            cohort._recall(genome, member)
-        cohort.phase = _phase(state, cohort)
+        cohort = cls({genome.key: genome for genome in genomes}, saved.generation)
+        if len(genomes) != size or len(cohort.genomes) != size:
+            raise ValueError(
+                f"expected {size} different genomes, got {len(cohort.genomes)} of {len(genomes)}"
+            )
+        for genome, member in zip(genomes, saved.members, strict=True):
+            if member.born > saved.generation:
+                raise ValueError(f"genome {genome.key} is born in the future")
+            cohort.born[genome.key] = member.born
+            if member.fitness is not None:
+                cohort._note(genome, member.fitness)
+        if saved.phase == "told" and len(cohort.fitness) < size:
+            raise ValueError("a genome that was told about has no fitness")
+        cohort.phase = saved.phase
         return cohort
-
-    def _recall(self, genome: Any, member: Any) -> None:
-        self.born[genome.key] = whole(member, "born", 0)
-        if self.born[genome.key] > self.generation:
-            raise ValueError(f"genome {genome.key} is born in the future")
-        if entry(member, "fitness", object) is not None:
-            self._note(genome, number(member, "fitness"))
-
-
-def _phase(state: Any, cohort: Cohort) -> str:
-    phase = entry(state, "phase", str)
-    if phase not in ("new", "asked", "told"):
-        raise ValueError(f"'phase' must be new, asked or told, not '{phase}'")
-    if phase == "told" and len(cohort.fitness) < len(cohort.genomes):
-        raise ValueError("a genome that was told about has no fitness")
-    return phase

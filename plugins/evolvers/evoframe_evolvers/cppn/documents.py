@@ -2,15 +2,57 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Literal, TypeAlias
 
+import attrs
 import neat
+from attrs.validators import ge
 from neat.genes import DefaultConnectionGene, DefaultNodeGene
 
-from evoframe_evolvers.cppn.checked import entry, number, rows, whole
+from evoframe import structure, suggestion
 from evoframe_libcppn import ACTIVATIONS, CppnNetwork, Link
 
-__all__ = ["dump_genome", "enabled_links", "express", "load_genome"]
+__all__ = ["dump_genome", "enabled_links", "express", "known_activation", "load_genome"]
+
+Path: TypeAlias = tuple[str, ...]
+
+
+def known_activation(_instance: Any, _attribute: Any, name: str) -> None:
+    """Refuse the name of an activation function that no network has; an attrs validator.
+
+    Raises:
+        ValueError: Lists the known ones.
+    """
+    if name not in ACTIVATIONS:
+        raise ValueError(f"unknown activation '{name}'{suggestion(name, ACTIVATIONS, 'known')}")
+
+
+@attrs.frozen
+class _SavedNode:
+    id: int = attrs.field(validator=ge(0))
+    bias: float
+    response: float
+    activation: str = attrs.field(validator=known_activation)
+    aggregation: Literal["sum"]
+    time_constant: float
+
+
+@attrs.frozen
+class _SavedConnection:
+    """A saved connection but for the key ``from``, which cannot be a field because it is a keyword."""
+
+    to: int = attrs.field(validator=ge(0))
+    innovation: int = attrs.field(validator=ge(1))
+    weight: float
+    enabled: bool
+
+
+@attrs.frozen
+class _SavedGenome:
+    id: int = attrs.field(validator=ge(1))
+    nodes: tuple[_SavedNode, ...]
+    connections: tuple[Any, ...]
 
 
 def dump_genome(genome: Any) -> dict[str, Any]:
@@ -41,18 +83,27 @@ def dump_genome(genome: Any) -> dict[str, Any]:
     }
 
 
-def load_genome(saved: Any) -> Any:
-    """Return the genome that :func:`dump_genome` made *saved* of; whether it encodes a network is not said.
+def load_genome(saved: Any, path: Path = ("genome",)) -> Any:
+    """Return the genome that :func:`dump_genome` made *saved* of, which need not encode a network.
+
+    Args:
+        saved: The genome as JSON values.
+        path: The keys that lead to it, for messages.
 
     Raises:
-        ValueError: It is no genome; names the entry that is wrong.
+        StructureError: It is not a genome; names the entry that is wrong.
+        ValueError: It has the same gene twice.
     """
-    genome = neat.DefaultGenome(whole(saved, "id", 1))
-    for gene in map(_load_node, rows(saved, "nodes")):
-        genome.nodes[gene.key] = gene
-    for gene in map(_load_connection, rows(saved, "connections")):
-        genome.connections[gene.key] = gene
-    if len(genome.nodes) + len(genome.connections) < len(saved["nodes"]) + len(saved["connections"]):
+    document = structure(saved, _SavedGenome, path)
+    nodes = [_node(node) for node in document.nodes]
+    connections = [
+        _connection(connection, (*path, f"connections[{n}]"))
+        for n, connection in enumerate(document.connections)
+    ]
+    genome = neat.DefaultGenome(document.id)
+    genome.nodes = {gene.key: gene for gene in nodes}
+    genome.connections = {gene.key: gene for gene in connections}
+    if len(genome.nodes) + len(genome.connections) < len(nodes) + len(connections):
         raise ValueError(f"genome {genome.key} has the same gene twice")
     return genome
 
@@ -71,20 +122,19 @@ def express(genome: Any, inputs: int, outputs: int) -> CppnNetwork:
     return CppnNetwork(inputs, outputs, genome.nodes, enabled_links(genome))
 
 
-def _load_node(saved: Any) -> Any:
-    gene = DefaultNodeGene(whole(saved, "id", 0))
-    gene.bias, gene.response = number(saved, "bias"), number(saved, "response")
-    gene.activation, gene.aggregation = entry(saved, "activation", str), entry(saved, "aggregation", str)
-    gene.time_constant = number(saved, "time_constant")
-    if gene.activation not in ACTIVATIONS or gene.aggregation != "sum":
-        raise ValueError(
-            f"node {gene.key} has activation '{gene.activation}', aggregation '{gene.aggregation}'"
-        )
+def _node(saved: _SavedNode) -> Any:
+    gene = DefaultNodeGene(saved.id)
+    gene.bias, gene.response, gene.time_constant = saved.bias, saved.response, saved.time_constant
+    gene.activation, gene.aggregation = saved.activation, saved.aggregation
     return gene
 
 
-def _load_connection(saved: Any) -> Any:
-    key = (whole(saved, "from"), whole(saved, "to", 0))
-    gene = DefaultConnectionGene(key, innovation=whole(saved, "innovation", 1))
-    gene.weight, gene.enabled = number(saved, "weight"), entry(saved, "enabled", bool)
+def _connection(saved: Any, path: Path) -> Any:
+    without_start = saved
+    if isinstance(saved, Mapping):
+        without_start = {key: value for key, value in saved.items() if key != "from"}
+    link = structure(without_start, _SavedConnection, path)  # refuses what is not a table
+    start = structure(saved.get("from"), int, (*path, "from"))
+    gene = DefaultConnectionGene((start, link.to), innovation=link.innovation)
+    gene.weight, gene.enabled = link.weight, link.enabled
     return gene

@@ -11,15 +11,15 @@ from typing import Any, NoReturn, TypeAlias
 import attrs
 import neat
 import numpy as np
+from attrs.validators import ge
 from neat.innovation import InnovationTracker
 
-from evoframe_evolvers.cppn.checked import entry, rows, whole
 from evoframe_evolvers.cppn.documents import express, load_genome
 from evoframe_evolvers.cppn.options import GeneOptions, GenomeOptions
 from evoframe_evolvers.cppn.randomness import PrivateStream
 from evoframe_libcppn import CppnNetwork
 
-__all__ = ["NO_SELECTION", "Counter", "GenePool", "Sections", "neat_sections"]
+__all__ = ["NO_SELECTION", "Counter", "GenePool", "SavedPool", "Sections", "neat_sections"]
 
 
 @attrs.define
@@ -49,6 +49,19 @@ NO_SELECTION: Sections = {
     "DefaultReproduction": {},
 }
 """What neat-python asks for even where it selects nothing."""
+
+
+@attrs.frozen
+class SavedPool:
+    """The document that :meth:`GenePool.state` returns."""
+
+    inputs: int
+    outputs: int
+    next_genome: int
+    next_node: int
+    innovation: int = attrs.field(validator=ge(0))
+    innovations: tuple[tuple[int, int, str, int], ...]
+    random: Any
 
 
 class GenePool:
@@ -93,13 +106,17 @@ class GenePool:
         """Return the network that *genome* encodes."""
         return express(genome, self.inputs, self.outputs)
 
-    def load(self, saved: Any) -> Any:
+    def load(self, saved: Any, path: tuple[str, ...]) -> Any:
         """Return the genome that :func:`dump_genome` made *saved* of.
 
+        Args:
+            saved: The genome as JSON values.
+            path: The keys that lead to it, for messages.
+
         Raises:
-            ValueError: It is no genome, or none that fits this population.
+            ValueError: It is not a genome, or does not fit this population.
         """
-        genome = load_genome(saved)
+        genome = load_genome(saved, path)
         self.express(genome)
         return genome
 
@@ -116,39 +133,36 @@ class GenePool:
             "random": self.stream.state(),
         }
 
-    def restore(self, state: Any, genomes: Collection[Any]) -> None:
+    def restore(self, saved: SavedPool, genomes: Collection[Any]) -> None:
         """Continue from what :meth:`state` returned.
 
         Args:
-            state: The saved state.
+            saved: The document.
             genomes: The genomes that were in use then; none of their ids may be given again.
 
         Raises:
-            ValueError: It is no such state; the pool stays as it is.
+            ValueError: It is of another population, or contradicts the genomes; the pool stays as it is.
         """
-        shape = whole(state, "inputs"), whole(state, "outputs")
+        shape = saved.inputs, saved.outputs
         if shape != (self.inputs, self.outputs):
             raise ValueError(
                 f"expected networks of {(self.inputs, self.outputs)} inputs and outputs, got {shape}"
             )
-        used_nodes = [key for genome in genomes for key in genome.nodes]
-        genome_id = whole(state, "next_genome", 1 + max(genome.key for genome in genomes))
-        node_id = whole(state, "next_node", max(self.outputs, 1 + max(used_nodes)))
-        innovation = whole(state, "innovation", 0)
-        innovations = dict(map(_load_innovation, rows(state, "innovations", 4)))
-        self.stream.restore(entry(state, "random", list))
-        self.genome_ids.value, self.node_ids.value = genome_id, node_id
-        self.tracker.global_counter = innovation
-        self.tracker.generation_innovations = innovations
+        _check_unused("next_genome", saved.next_genome, [genome.key for genome in genomes])
+        nodes = [key for genome in genomes for key in genome.nodes]
+        _check_unused("next_node", saved.next_node, [self.outputs - 1, *nodes])
+        self.stream.restore(saved.random)
+        self.genome_ids.value, self.node_ids.value = saved.next_genome, saved.next_node
+        self.tracker.global_counter = saved.innovation
+        self.tracker.generation_innovations = {
+            (start, end, change): number for start, end, change, number in saved.innovations
+        }
 
 
-def _load_innovation(saved: list[Any]) -> tuple[tuple[int, int, str], int]:
-    source, target, change, innovation = saved
-    if not all(isinstance(value, int) for value in (source, target, innovation)) or not isinstance(
-        change, str
-    ):
-        raise ValueError(f"not an innovation: {saved}")
-    return (source, target, change), innovation
+def _check_unused(key: str, value: int, used: Collection[int]) -> None:
+    """Refuse a next id that is not above all ids in use."""
+    if value <= max(used):
+        raise ValueError(f"state.pool.{key}: must be > {max(used)}, found {value}")
 
 
 def _neat_config(sections: Sections) -> Any:
@@ -164,8 +178,49 @@ def _neat_config(sections: Sections) -> Any:
         )
 
 
+def _number_keys(name: str, options: GeneOptions) -> Mapping[str, Any]:
+    return {
+        f"{name}_init_type": "gaussian",
+        f"{name}_init_mean": options.init_mean,
+        f"{name}_init_stdev": options.init_stdev,
+        f"{name}_min_value": options.minimum,
+        f"{name}_max_value": options.maximum,
+        f"{name}_mutate_power": options.mutate_power,
+        f"{name}_mutate_rate": options.mutate_rate,
+        f"{name}_replace_rate": options.replace_rate,
+    }
+
+
+_ALWAYS_1 = GeneOptions(
+    init_mean=1.0,
+    init_stdev=0.0,
+    minimum=1.0,
+    maximum=1.0,
+    mutate_power=0.0,
+    mutate_rate=0.0,
+    replace_rate=0.0,
+)
+
+_FIXED: Mapping[str, Any] = {
+    "num_hidden": 0,
+    "feed_forward": True,
+    "initial_connection": "full_direct",
+    "single_structural_mutation": False,
+    "structural_mutation_surer": False,
+    "activation_default": "random",
+    "aggregation_default": "sum",
+    "aggregation_options": "sum",
+    "aggregation_mutate_rate": 0.0,
+    "enabled_default": True,
+    "enabled_rate_to_true_add": 0.0,
+    "enabled_rate_to_false_add": 0.0,
+    **_number_keys("response", _ALWAYS_1),
+    **_number_keys("time_constant", _ALWAYS_1),
+}
+
+
 def neat_sections(options: GenomeOptions, selection: Sections, inputs: int, outputs: int) -> Sections:
-    """Return all that is written for neat-python, which says nothing of a key that it does not know."""
+    """Return the whole configuration for neat-python, which ignores keys that it does not know."""
     return {
         **selection,
         "NEAT": {
@@ -177,67 +232,17 @@ def neat_sections(options: GenomeOptions, selection: Sections, inputs: int, outp
         },
         "DefaultGenome": {
             **selection["DefaultGenome"],
+            **_FIXED,
             "num_inputs": inputs,
             "num_outputs": outputs,
-            **_fixed_keys(),
-            **_option_keys(options),
+            "conn_add_prob": options.connection_add,
+            "conn_delete_prob": options.connection_delete,
+            "node_add_prob": options.node_add,
+            "node_delete_prob": options.node_delete,
+            "activation_options": " ".join(options.activations),
+            "activation_mutate_rate": options.activation_mutate_rate,
+            "enabled_mutate_rate": options.enabled_mutate_rate,
+            **_number_keys("bias", options.bias),
+            **_number_keys("weight", options.weight),
         },
-    }
-
-
-def _option_keys(options: GenomeOptions) -> Mapping[str, Any]:
-    return {
-        "conn_add_prob": options.connection_add,
-        "conn_delete_prob": options.connection_delete,
-        "node_add_prob": options.node_add,
-        "node_delete_prob": options.node_delete,
-        "activation_options": " ".join(options.activations),
-        "activation_mutate_rate": options.activation_mutate_rate,
-        "enabled_mutate_rate": options.enabled_mutate_rate,
-        **_number_keys("bias", options.bias),
-        **_number_keys("weight", options.weight),
-    }
-
-
-def _fixed_keys() -> Mapping[str, Any]:
-    return {
-        "num_hidden": 0,
-        "feed_forward": True,
-        "initial_connection": "full_direct",
-        "single_structural_mutation": False,
-        "structural_mutation_surer": False,
-        "activation_default": "random",
-        "aggregation_default": "sum",
-        "aggregation_options": "sum",
-        "aggregation_mutate_rate": 0.0,
-        "enabled_default": True,
-        "enabled_rate_to_true_add": 0.0,
-        "enabled_rate_to_false_add": 0.0,
-        **_number_keys("response", _fixed_at(1.0)),
-        **_number_keys("time_constant", _fixed_at(1.0)),
-    }
-
-
-def _fixed_at(value: float) -> GeneOptions:
-    return GeneOptions(
-        init_mean=value,
-        init_stdev=0.0,
-        minimum=value,
-        maximum=value,
-        mutate_power=0.0,
-        mutate_rate=0.0,
-        replace_rate=0.0,
-    )
-
-
-def _number_keys(name: str, options: GeneOptions) -> Mapping[str, Any]:
-    return {
-        f"{name}_init_type": "gaussian",
-        f"{name}_init_mean": options.init_mean,
-        f"{name}_init_stdev": options.init_stdev,
-        f"{name}_min_value": options.minimum,
-        f"{name}_max_value": options.maximum,
-        f"{name}_mutate_power": options.mutate_power,
-        f"{name}_mutate_rate": options.mutate_rate,
-        f"{name}_replace_rate": options.replace_rate,
     }

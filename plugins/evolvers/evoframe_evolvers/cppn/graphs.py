@@ -1,4 +1,4 @@
-"""What a figure draws of a saved genome."""
+"""Graphs of saved genomes, for figures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def genome_graph(saved: Any, inputs: int, outputs: int) -> NetworkGraph:
         outputs: Number of outputs of the network.
 
     Raises:
-        ValueError: It is no genome, or encodes no network with so many inputs and outputs.
+        ValueError: It is not a genome, or does not encode a network with so many inputs and outputs.
     """
     genome = load_genome(saved)
     express(genome, inputs, outputs)  # refuses cycles, and links and outputs without a node

@@ -1,4 +1,4 @@
-"""What evolvers of networks share while they run: everything but how the next generation comes about."""
+"""Evolution of networks, but for how the next generation comes about."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import Member, Network
-from evoframe_evolvers.cppn.checked import entry
-from evoframe_evolvers.cppn.cohort import Cohort
+from evoframe_evolvers.cppn.cohort import Cohort, SavedCohort
 from evoframe_evolvers.cppn.documents import dump_genome
 from evoframe_evolvers.cppn.genomes import GenePool
 
@@ -59,12 +58,13 @@ class NetworkRun(ABC):
         """Return *genome* as JSON values."""
         return dump_genome(genome)
 
-    def _saved_cohort(self, state: Any, evolver: str) -> Cohort:
-        """Return the cohort of a saved state, which must be one of this *evolver*."""
-        saved = entry(state, "evolver", str)
-        if saved != evolver:
-            raise ValueError(f"the state is one of '{saved}', not of '{evolver}'")
-        return Cohort.from_state(entry(state, "cohort", dict), self._size, self._pool.load)
+    def _saved_cohort(self, saved: SavedCohort) -> Cohort:
+        """Return the cohort of a saved state."""
+        genomes = [
+            self._pool.load(member.genome, ("state", "cohort", f"members[{n}]", "genome"))
+            for n, member in enumerate(saved.members)
+        ]
+        return Cohort.from_state(saved, genomes, self._size)
 
     @abstractmethod
     def state(self) -> Any:

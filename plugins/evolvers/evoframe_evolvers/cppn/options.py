@@ -7,9 +7,10 @@ from importlib.metadata import version
 from typing import Any
 
 import attrs
-from attrs.validators import and_, ge, instance_of, le
+from attrs.validators import and_, deep_iterable, ge, instance_of, le
 
-from evoframe import NetworkGraph, suggestion
+from evoframe import NetworkGraph
+from evoframe_evolvers.cppn.documents import known_activation
 from evoframe_evolvers.cppn.graphs import genome_graph
 from evoframe_libcppn import ACTIVATIONS
 
@@ -30,12 +31,9 @@ def finite(_instance: Any, attribute: attrs.Attribute[float], value: float) -> N
         raise ValueError(f"{attribute.name} must be a finite number, not {value}")
 
 
-def _known_activations(_instance: Any, attribute: attrs.Attribute[Any], names: tuple[str, ...]) -> None:
+def _at_least_one(_instance: Any, attribute: attrs.Attribute[Any], names: tuple[str, ...]) -> None:
     if not names:
         raise ValueError(f"{attribute.name} must name at least one of {', '.join(ACTIVATIONS)}")
-    for name in names:
-        if name not in ACTIVATIONS:
-            raise ValueError(f"unknown activation '{name}'{suggestion(name, ACTIVATIONS, 'known')}")
 
 
 def probability(default: float) -> Any:
@@ -115,7 +113,9 @@ class GenomeOptions:
         weight: How weights begin and mutate (authors' configuration).
     """
 
-    activations: tuple[str, ...] = attrs.field(default=ACTIVATIONS, validator=_known_activations)
+    activations: tuple[str, ...] = attrs.field(
+        default=ACTIVATIONS, validator=[_at_least_one, deep_iterable(known_activation)]
+    )
     activation_mutate_rate: float = probability(0.4)
     connection_add: float = probability(0.3)
     connection_delete: float = probability(0.2)

@@ -25,7 +25,8 @@ class PrivateStream:
 
     def __init__(self, rng: np.random.Generator) -> None:
         """Seed the stream by one draw from *rng*."""
-        self._state = _seeded(rng)
+        seed = int.from_bytes(rng.bytes(32), "little")
+        self._state = random.Random(seed).getstate()  # noqa: S311 - evolution, not cryptography
 
     @contextmanager
     def swapped_in(self) -> Iterator[None]:
@@ -57,8 +58,3 @@ class PrivateStream:
         except (OverflowError, TypeError, ValueError) as error:
             raise ValueError(f"not the state of a random stream: {error}") from error
         self._state = twister.getstate()
-
-
-def _seeded(rng: np.random.Generator) -> tuple[Any, ...]:
-    seed = int.from_bytes(rng.bytes(32), "little")
-    return random.Random(seed).getstate()  # noqa: S311 - evolution, not cryptography

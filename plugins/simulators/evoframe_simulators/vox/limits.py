@@ -1,13 +1,17 @@
-"""Limits of what ``vox`` accepts, and the validators of its options: each is stated once, here."""
+"""Limits of what ``vox`` accepts, and the validators of its options.
+
+The ranges of numbers that the solver takes are those of its own table.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import attrs
 import numpy as np
-from attrs import validators
+
+import evoframe_libvox as libvox
 
 __all__ = [
     "LARGEST_CODE",
@@ -15,14 +19,12 @@ __all__ = [
     "MOST_CYCLES",
     "MOST_RECORD_BYTES",
     "MOST_STEPS",
-    "MOST_SUBSTEPS",
-    "NOT_NEGATIVE",
-    "POISSON_RATIO",
-    "POSITIVE",
+    "VALID_PROPERTY",
+    "VALID_SETTING",
     "check_distinct",
     "check_finite",
     "check_printable",
-    "within",
+    "in_range",
 ]
 
 LARGEST_CODE = 255
@@ -40,17 +42,22 @@ MOST_RECORD_BYTES = 2**32
 MOST_STEPS = 2**53
 """Of a simulation; every smaller whole number is a ``float`` of its own."""
 
-MOST_SUBSTEPS = 1000
-"""Of a nominal time step."""
 
-POSITIVE = validators.gt(0.0)
-NOT_NEGATIVE = validators.ge(0.0)
-POISSON_RATIO = validators.and_(validators.ge(0.0), validators.lt(0.5))
+def in_range(span: libvox.Range) -> Callable[[Any, attrs.Attribute[Any], float], None]:
+    """Return a validator that refuses numbers outside a range of the solver."""
+
+    def check(_: Any, attribute: attrs.Attribute[Any], value: float) -> None:
+        if value not in span:
+            raise ValueError(f"'{attribute.name}' must be {span.words}: {value}")
+
+    return check
 
 
-def within(least: float, most: float) -> Any:
-    """Return a validator of numbers from *least* to *most*, both included."""
-    return validators.and_(validators.ge(least), validators.le(most))
+VALID_SETTING = {name: in_range(span) for name, span in libvox.SETTING_RANGES.items()}
+"""Validator of each number among the solver's settings, by the solver's name."""
+
+VALID_PROPERTY = {name: in_range(span) for name, span in libvox.PROPERTY_RANGES.items()}
+"""Validator of each property of a material, by the solver's name."""
 
 
 def check_finite(_: Any, attribute: attrs.Attribute[Any], value: Sequence[float]) -> None:

@@ -7,17 +7,11 @@ from typing import Any
 
 import attrs
 import numpy as np
+from attrs import validators
 
 import evoframe_libvox as libvox
 from evoframe import EMPTY
-from evoframe_simulators.vox.limits import (
-    LARGEST_CODE,
-    NOT_NEGATIVE,
-    POISSON_RATIO,
-    POSITIVE,
-    check_printable,
-    within,
-)
+from evoframe_simulators.vox.limits import LARGEST_CODE, VALID_PROPERTY, check_printable
 
 __all__ = ["PaletteMaterial", "check_palette", "described", "single", "solver_palette"]
 
@@ -38,13 +32,13 @@ class PaletteMaterial:
         name: For people.
     """
 
-    code: int = attrs.field(validator=within(1, LARGEST_CODE))
-    youngs_modulus: float = attrs.field(validator=POSITIVE)
-    poisson_ratio: float = attrs.field(validator=POISSON_RATIO)
-    density: float = attrs.field(validator=POSITIVE)
-    expansion_coefficient: float
-    static_friction: float = attrs.field(default=1.0, validator=NOT_NEGATIVE)
-    dynamic_friction: float = attrs.field(default=0.5, validator=NOT_NEGATIVE)
+    code: int = attrs.field(validator=[validators.ge(1), validators.le(LARGEST_CODE)])
+    youngs_modulus: float = attrs.field(validator=VALID_PROPERTY["youngs_modulus"])
+    poisson_ratio: float = attrs.field(validator=VALID_PROPERTY["poisson_ratio"])
+    density: float = attrs.field(validator=VALID_PROPERTY["density"])
+    expansion_coefficient: float = attrs.field(validator=VALID_PROPERTY["expansion"])
+    static_friction: float = attrs.field(default=1.0, validator=VALID_PROPERTY["static_friction"])
+    dynamic_friction: float = attrs.field(default=0.5, validator=VALID_PROPERTY["dynamic_friction"])
     name: str = attrs.field(default="", validator=check_printable)
 
 

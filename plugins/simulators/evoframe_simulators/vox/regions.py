@@ -10,7 +10,7 @@ import numpy as np
 from attrs import validators
 from numpy.typing import NDArray
 
-from evoframe_simulators.vox.limits import NOT_NEGATIVE, check_distinct, check_finite
+from evoframe_simulators.vox.limits import check_distinct, check_finite
 
 __all__ = ["DEGREES_OF_FREEDOM", "DegreeOfFreedom", "FixedRegion", "fixed_mask", "overlapping"]
 
@@ -33,7 +33,7 @@ class FixedRegion:
 
     origin: tuple[float, float, float] = attrs.field(default=(0.0, 0.0, 0.0), validator=check_finite)
     size: tuple[float, float, float] = attrs.field(
-        default=(0.001, 1.0, 1.0), validator=[validators.deep_iterable(NOT_NEGATIVE), check_finite]
+        default=(0.001, 1.0, 1.0), validator=[validators.deep_iterable(validators.ge(0.0)), check_finite]
     )
     degrees_of_freedom: tuple[DegreeOfFreedom, ...] = attrs.field(
         default=DEGREES_OF_FREEDOM,

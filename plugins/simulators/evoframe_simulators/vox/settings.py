@@ -10,14 +10,7 @@ from attrs import validators
 from numpy.typing import NDArray
 
 from evoframe import CONTRACTILE, CONTROLLER, PASSIVE, Design
-from evoframe_simulators.vox.limits import (
-    MOST_STEPS,
-    MOST_SUBSTEPS,
-    NOT_NEGATIVE,
-    POISSON_RATIO,
-    POSITIVE,
-    within,
-)
+from evoframe_simulators.vox.limits import MOST_STEPS, VALID_PROPERTY, VALID_SETTING
 from evoframe_simulators.vox.materials import PaletteMaterial, check_palette, single
 from evoframe_simulators.vox.regions import FixedRegion
 
@@ -78,40 +71,42 @@ class VoxSettings:
         largest_distance: So does a voxel that is further from its start, in longest edges of the canvas.
     """
 
-    duration: float = attrs.field(default=0.07, validator=POSITIVE)
-    voxel_size: float = attrs.field(default=0.05, validator=POSITIVE)
-    youngs_modulus: float = attrs.field(default=5e6, validator=POSITIVE)
-    poisson_ratio: float = attrs.field(default=0.35, validator=POISSON_RATIO)
-    density: float = attrs.field(default=1e6, validator=POSITIVE)
-    expansion_coefficient: float = 0.01
-    static_friction: float = attrs.field(default=1.0, validator=NOT_NEGATIVE)
-    dynamic_friction: float = attrs.field(default=0.5, validator=NOT_NEGATIVE)
+    duration: float = attrs.field(default=0.07, validator=VALID_SETTING["duration"])
+    voxel_size: float = attrs.field(default=0.05, validator=VALID_SETTING["voxel_size"])
+    youngs_modulus: float = attrs.field(default=5e6, validator=VALID_PROPERTY["youngs_modulus"])
+    poisson_ratio: float = attrs.field(default=0.35, validator=VALID_PROPERTY["poisson_ratio"])
+    density: float = attrs.field(default=1e6, validator=VALID_PROPERTY["density"])
+    expansion_coefficient: float = attrs.field(default=0.01, validator=VALID_PROPERTY["expansion"])
+    static_friction: float = attrs.field(default=1.0, validator=VALID_PROPERTY["static_friction"])
+    dynamic_friction: float = attrs.field(default=0.5, validator=VALID_PROPERTY["dynamic_friction"])
     palette: tuple[PaletteMaterial, ...] = attrs.field(default=(), validator=check_palette)
     temperature_base: float = 25.0
     temperature_amplitude: float = 39.4714242553
-    frequency: float = attrs.field(default=4.0, validator=POSITIVE)
+    frequency: float = attrs.field(default=4.0, validator=validators.gt(0.0))
     phase_unit: Literal["cycles", "radians"] = "cycles"
-    start_time: float = attrs.field(default=0.0, validator=NOT_NEGATIVE)
-    ramp: float = attrs.field(default=0.0, validator=NOT_NEGATIVE)
-    gravity: float = 0.0
+    start_time: float = attrs.field(default=0.0, validator=VALID_SETTING["start_time"])
+    ramp: float = attrs.field(default=0.0, validator=VALID_SETTING["ramp"])
+    gravity: float = attrs.field(default=0.0, validator=VALID_SETTING["gravity"])
     floor: bool = False
-    floor_slope: float = attrs.field(default=0.0, validator=within(-89.0, 89.0))
-    fluid_drag: float = attrs.field(default=0.0, validator=NOT_NEGATIVE)
+    floor_slope: float = attrs.field(default=0.0, validator=VALID_SETTING["floor_slope"])
+    fluid_drag: float = attrs.field(default=0.0, validator=VALID_SETTING["fluid_drag"])
     fixed: tuple[FixedRegion, ...] = (FixedRegion(),)
     self_collision: bool = True
-    collision_envelope: float = attrs.field(default=1.5, validator=within(1.0, 2.0))
-    collision_horizon: float = attrs.field(default=2.0, validator=within(1.0, 4.0))
+    collision_envelope: float = attrs.field(default=1.5, validator=VALID_SETTING["collision_envelope"])
+    collision_horizon: float = attrs.field(default=2.0, validator=VALID_SETTING["collision_horizon"])
     complete_contacts: bool = False
-    contact_damping: float = attrs.field(default=0.0, validator=NOT_NEGATIVE)
+    contact_damping: float = attrs.field(default=0.0, validator=VALID_SETTING["contact_damping"])
     contact_friction: bool = False
-    time_step_fraction: float = attrs.field(default=0.9, validator=[POSITIVE, validators.le(1.0)])
-    substeps: int = attrs.field(default=1, validator=within(1, MOST_SUBSTEPS))
-    step_limit: int = attrs.field(default=10_000_000, validator=within(1, MOST_STEPS))
-    bond_damping: float = attrs.field(default=1.0, validator=NOT_NEGATIVE)
-    slow_damping: float = attrs.field(default=0.01, validator=NOT_NEGATIVE)
-    collision_damping: float = attrs.field(default=0.8, validator=NOT_NEGATIVE)
-    largest_strain: float = attrs.field(default=100.0, validator=POSITIVE)
-    largest_distance: float = attrs.field(default=100.0, validator=POSITIVE)
+    time_step_fraction: float = attrs.field(default=0.9, validator=VALID_SETTING["time_step_fraction"])
+    substeps: int = attrs.field(default=1, validator=VALID_SETTING["substeps"])
+    step_limit: int = attrs.field(
+        default=10_000_000, validator=[VALID_SETTING["step_limit"], validators.le(MOST_STEPS)]
+    )
+    bond_damping: float = attrs.field(default=1.0, validator=VALID_SETTING["bond_damping"])
+    slow_damping: float = attrs.field(default=0.01, validator=VALID_SETTING["slow_damping"])
+    collision_damping: float = attrs.field(default=0.8, validator=VALID_SETTING["floor_damping"])
+    largest_strain: float = attrs.field(default=100.0, validator=VALID_SETTING["largest_strain"])
+    largest_distance: float = attrs.field(default=100.0, validator=VALID_SETTING["largest_distance"])
 
 
 def materials_of(settings: VoxSettings) -> dict[int, PaletteMaterial]:

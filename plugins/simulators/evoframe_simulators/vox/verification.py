@@ -8,8 +8,9 @@ from typing import TypeVar
 import attrs
 import numpy as np
 
+import evoframe_libvox as libvox
 from evoframe import CONTROLLER, MORPHOLOGY, Design, Record
-from evoframe_simulators.vox.limits import MOST_STEPS, MOST_SUBSTEPS
+from evoframe_simulators.vox.limits import MOST_STEPS
 from evoframe_simulators.vox.models import clock_of
 from evoframe_simulators.vox.settings import VoxSettings
 
@@ -42,7 +43,7 @@ def changes(settings: S, design: Design, record: Record) -> Iterator[tuple[str, 
     longer = attrs.evolve(settings, duration=2 * settings.duration, step_limit=limit)
     yield "contraction off", _still(settings), design, record
     yield "self collision off", attrs.evolve(settings, self_collision=False), design, record
-    if 2 * settings.substeps <= MOST_SUBSTEPS:
+    if 2 * settings.substeps in libvox.SETTING_RANGES["substeps"]:
         finer = attrs.evolve(settings, substeps=2 * settings.substeps, step_limit=limit)
         yield "half the time step", finer, design, record
     yield "twice the duration", longer, design, _later(settings, longer, design, record)

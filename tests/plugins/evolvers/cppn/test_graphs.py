@@ -72,15 +72,18 @@ def with_gene(genes: str, **changes: Any) -> Any:
 @pytest.mark.parametrize(
     ("genome", "words"),
     [
-        (None, "'id' is missing"),
-        ({"id": 1, "nodes": 3}, "'nodes' must be of type list"),
-        (with_gene("nodes", activation="cosine"), "node 0 has activation 'cosine'"),
-        (with_gene("nodes", bias=10**400), "'bias' must be a finite number"),
+        (None, "genome: expected a table, found null"),
+        ({"id": 1, "nodes": 3}, r"genome\.nodes: expected a list, found 3; genome\.connections: is missing"),
+        (with_gene("nodes", activation="cosine"), r"nodes\[0\]\.activation: unknown activation 'cosine'"),
+        (with_gene("nodes", bias=10**400), r"nodes\[0\]\.bias: int too large to convert to float"),
         (with_gene("nodes", id=7), "-1 -> 0"),
-        (with_gene("connections", weight=float("nan")), "'weight' must be a finite number"),
+        (
+            with_gene("connections", weight=float("nan")),
+            r"connections\[0\]\.weight: expected a finite number",
+        ),
         (with_gene("connections", **{"from": -9}), "-9 -> "),
         (with_gene("connections", **{"from": 0, "to": 0}), "cycle"),
-        (with_gene("connections", enabled=1), "'enabled' must be of type bool"),
+        (with_gene("connections", enabled=1), r"connections\[0\]\.enabled: expected true or false, found 1"),
     ],
 )
 def test_a_fault_is_named(genome: Any, words: str) -> None:

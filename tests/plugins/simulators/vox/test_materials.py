@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import attrs
@@ -25,11 +26,13 @@ def test_one_code_for_two_materials_is_refused() -> None:
     [
         ({"code": 0}, "'code' must be >= 1"),
         ({"code": 256}, "'code' must be <= 255"),
-        ({"youngs_modulus": 0.0}, "'youngs_modulus' must be > 0.0"),
-        ({"poisson_ratio": 0.5}, "'poisson_ratio' must be < 0.5"),
-        ({"poisson_ratio": -0.1}, "'poisson_ratio' must be >= 0.0"),
-        ({"density": -1.0}, "'density' must be > 0.0"),
-        ({"static_friction": -1.0}, "'static_friction' must be >= 0.0"),
+        ({"youngs_modulus": 0.0}, "'youngs_modulus' must be between 1e-6 and 1e18 Pa: 0.0"),
+        ({"poisson_ratio": 0.5}, "'poisson_ratio' must be at least 0 and below 0.5: 0.5"),
+        ({"poisson_ratio": -0.1}, "'poisson_ratio' must be at least 0 and below 0.5: -0.1"),
+        ({"density": -1.0}, "'density' must be between 1e-6 and 1e18 kg/m3: -1.0"),
+        ({"expansion_coefficient": math.inf}, "'expansion_coefficient' must be finite: inf"),
+        ({"static_friction": -1.0}, "'static_friction' must be finite and not negative: -1.0"),
+        ({"dynamic_friction": math.nan}, "'dynamic_friction' must be finite and not negative: nan"),
         ({"name": "two\nlines"}, "'name' must be one line of printable characters"),
     ],
 )

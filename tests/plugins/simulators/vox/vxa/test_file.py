@@ -44,7 +44,7 @@ def test_counted_steps_need_no_duration_that_suits_the_time_step() -> None:
 @pytest.mark.parametrize(
     ("steps", "options", "message"),
     [
-        (None, {"voxel_size": -1.0}, "'voxel_size' must be > 0"),
+        (None, {"voxel_size": -1.0}, "'voxel_size' must be between 1e-6 and 1e6 m"),
         (None, {"frequency": 1e-60}, "^period must be"),
         (7, {"frequency": 1e-60}, "^period must be"),
         (10**9, {}, r"^duration = .* takes 1000000000 steps, more than step_limit = 10000000; simulate less"),

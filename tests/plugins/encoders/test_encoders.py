@@ -1,0 +1,21 @@
+"""The encoders that are offered, and their optional capabilities."""
+
+from __future__ import annotations
+
+import pytest
+
+from evoframe import Encoder, SupportsInputNames, SupportsOutputNames
+from evoframe_encoders import CppnController, CppnMorphology, evoframe_encoders
+
+
+def test_they_are_offered_by_name() -> None:
+    assert evoframe_encoders() == {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}
+
+
+@pytest.mark.parametrize("encoder", evoframe_encoders().values())
+def test_each_names_its_inputs_and_outputs(encoder: type[Encoder]) -> None:
+    component = encoder()
+    assert isinstance(component, SupportsInputNames)
+    assert isinstance(component, SupportsOutputNames)
+    assert len(component.input_names) == component.inputs
+    assert len(component.output_names) == component.outputs

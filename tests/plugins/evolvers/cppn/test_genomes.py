@@ -1,0 +1,123 @@
+"""The pool that genomes come from: its counters, its configuration and its state."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import random
+from typing import Any
+
+import attrs
+import neat
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from evoframe import StructureError, structure
+from evoframe_evolvers import RandomSearch
+from evoframe_evolvers.cppn import NO_SELECTION, Counter, GenePool, SavedPool
+from evoframe_evolvers.cppn.documents import dump_genome
+
+
+def pool_of(inputs: int = 3, outputs: int = 2, seed: int = 0, **options: Any) -> GenePool:
+    evolver = RandomSearch(**options)
+    return GenePool(evolver, NO_SELECTION, inputs, outputs, np.random.default_rng(seed))
+
+
+def draw(pool: GenePool, mutations: int = 0) -> Any:
+    genome = neat.DefaultGenome(next(pool.genome_ids))
+    with pool.stream.swapped_in():
+        genome.configure_new(pool.config.genome_config)
+        for _ in range(mutations):
+            genome.mutate(pool.config.genome_config)
+    return genome
+
+
+def saved(pool: GenePool) -> Any:
+    return json.loads(json.dumps(pool.state()))
+
+
+def restore(pool: GenePool, state: Any, genomes: list[Any]) -> None:
+    pool.restore(structure(state, SavedPool, ("pool",)), genomes)
+
+
+@given(st.integers(), st.integers(0, 20))
+def test_a_counter_counts_on_from_its_value(start: int, steps: int) -> None:
+    counter = Counter(start)
+    assert [*itertools.islice(counter, steps)] == [*range(start, start + steps)]
+    assert counter.value == start + steps
+
+
+@given(st.integers(1, 5), st.integers(1, 5), st.integers(0, 12), st.integers(0, 99))
+def test_a_restored_pool_goes_on_as_the_saved_one(
+    inputs: int, outputs: int, mutations: int, seed: int
+) -> None:
+    pool, other = pool_of(inputs, outputs, seed), pool_of(inputs, outputs, seed + 1)
+    genomes = [draw(pool, mutations) for _ in range(3)]
+    restore(other, saved(pool), genomes)
+    assert saved(other) == saved(pool)
+    expected = [dump_genome(draw(pool, mutations)) for _ in range(3)]
+    assert [dump_genome(draw(other, mutations)) for _ in range(3)] == expected
+
+
+def test_hidden_nodes_are_numbered_after_the_outputs() -> None:
+    pool = pool_of(outputs=2, node_add=1.0, node_delete=0.0, connection_delete=0.0)
+    hidden = [key for key in draw(pool, 5).nodes if key not in (0, 1)]
+    assert hidden == [2, 3, 4, 5, 6]
+    assert pool.node_ids.value == 7
+
+
+def test_the_global_stream_is_left_alone() -> None:
+    before = random.getstate()
+    draw(pool_of(), 5)
+    assert random.getstate() == before
+
+
+def test_a_loaded_genome_is_the_dumped_one() -> None:
+    pool = pool_of()
+    document = dump_genome(draw(pool, 9))
+    assert dump_genome(pool.load(document, ("genome",))) == document
+
+
+def test_a_genome_of_another_pool_is_refused() -> None:
+    document = dump_genome(draw(pool_of(inputs=4)))
+    with pytest.raises(ValueError, match="-4 -> "):
+        pool_of(inputs=3).load(document, ("genome",))
+
+
+def test_a_fault_of_a_genome_has_the_place_that_it_was_read_from() -> None:
+    with pytest.raises(StructureError, match=r"^here\.there: expected a table, found 3$"):
+        pool_of().load(3, ("here", "there"))
+
+
+def test_the_state_of_another_shape_is_refused() -> None:
+    pool = pool_of()
+    with pytest.raises(ValueError, match=r"expected networks of \(3, 2\) inputs and outputs, got \(4, 2\)"):
+        restore(pool, saved(pool_of(inputs=4)), [draw(pool)])
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        ({"next_genome": 1}, "next_genome: must be > 1, found 1"),
+        ({"next_node": 1}, "next_node: must be > 1, found 1"),
+        ({"next_node": 2.0}, r"next_node: expected a whole number, found 2\.0"),
+        ({"innovation": -1}, "innovation: must be >= 0, found -1"),
+        ({"innovations": [[1, 2, 3, 4]]}, r"innovations\[0\]\[2\]: expected a string, found 3"),
+        ({"innovations": [[1, 2, "add"]]}, r"innovations\[0\]: expected a list of 4"),
+        ({"random": [3, [], None]}, "not the state of a random stream"),
+        ({"random": None}, "not the state of a random stream"),
+    ],
+)
+def test_a_damaged_state_is_refused_and_changes_nothing(change: dict[str, Any], fault: str) -> None:
+    pool, other = pool_of(), pool_of(seed=1)
+    genome = draw(pool, 3)
+    genome.nodes = {key: gene for key, gene in genome.nodes.items() if key < 2}
+    before = saved(other)
+    with pytest.raises(ValueError, match=fault):
+        restore(other, saved(pool) | change, [genome])
+    assert saved(other) == before
+
+
+def test_the_document_has_the_keys_of_a_state() -> None:
+    assert {*saved(pool_of())} == {field.name for field in attrs.fields(SavedPool)}

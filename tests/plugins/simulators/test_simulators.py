@@ -1,0 +1,38 @@
+"""The simulators that are offered, and their optional capabilities."""
+
+from __future__ import annotations
+
+import pytest
+
+from evoframe import (
+    SupportsExport,
+    SupportsGeometry,
+    SupportsProvenance,
+    SupportsPublished,
+    SupportsRandomControllers,
+    SupportsReading,
+    SupportsSettings,
+    SupportsVariants,
+)
+from evoframe_simulators import Vox, evoframe_simulators
+
+
+def test_vox_is_offered_by_name() -> None:
+    assert evoframe_simulators() == {"vox": Vox}
+
+
+@pytest.mark.parametrize(
+    "capability",
+    [
+        SupportsExport,
+        SupportsGeometry,
+        SupportsProvenance,
+        SupportsPublished,
+        SupportsRandomControllers,
+        SupportsReading,
+        SupportsSettings,
+        SupportsVariants,
+    ],
+)
+def test_vox_has_every_capability_of_a_simulator(capability: type) -> None:
+    assert isinstance(Vox(), capability)
