@@ -11,15 +11,15 @@ from typing import Any, Literal, TypeAlias
 
 import attrs
 
-from evoframe.messages import full_text
-from evoframe.record import CHAINED, CHAMPION_FILE, Run, SINGLE, open_unchecked, provenance_of
+from evoframe.config import load_config
 from evoframe.contract import RunConfig
+from evoframe.documents import differences
 from evoframe.errors import EvoframeError, InputError
 from evoframe.evolution import assemble, simulated
 from evoframe.files import LOCK_FILE, acquire_lock
+from evoframe.messages import full_text
+from evoframe.record import CHAINED, CHAMPION_FILE, SINGLE, Run, open_unchecked, provenance_of
 from evoframe.registry import Plugins
-from evoframe.documents import differences
-from evoframe.config import load_config
 from evoframe.runs.resuming import configuration_of, restore
 
 __all__ = ["Check", "State", "check_installation", "check_run"]

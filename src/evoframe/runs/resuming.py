@@ -12,12 +12,29 @@ from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.evolution import Coevolution, assemble
 from evoframe.files import Lock, acquire_lock, is_leftover, parsed_json, released_on_error, remove
-from evoframe.record import CHAINED, CONFIG_FILE, Run, SINGLE, Store, design_from_json, open_run, provenance_of
+from evoframe.record import (
+    CHAINED,
+    CONFIG_FILE,
+    SINGLE,
+    Run,
+    Store,
+    design_from_json,
+    open_run,
+    provenance_of,
+)
 from evoframe.registry import Plugins, discover
 from evoframe.runs.execution import Execution, verify_champion
 from evoframe.runs.starting import opened_store
 
-__all__ = ["configuration_of", "is_finished", "is_verified", "reopen", "restore", "resume", "verify_if_missing"]
+__all__ = [
+    "configuration_of",
+    "is_finished",
+    "is_verified",
+    "reopen",
+    "restore",
+    "resume",
+    "verify_if_missing",
+]
 
 
 def resume(
@@ -156,7 +173,9 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
     config = resolved(layers.under(overrides), path.stem, plugins)
     began = run.configuration() if run.begun else resolved(layers, path.stem, plugins).deciding()
     if others := differences(began, config.deciding()):
-        raise ConfigurationError(_listed(f"{run.directory}: the configuration is not that of the run", others))
+        raise ConfigurationError(
+            _listed(f"{run.directory}: the configuration is not that of the run", others)
+        )
     return config
 
 

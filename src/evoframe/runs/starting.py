@@ -84,7 +84,9 @@ def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Exe
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
         tables = as_read({**config.tables(), "provenance": provenance_of(config)})
-        return Execution(config, usable, directory, tables, coevolution, _new_store(directory, config, tables))
+        return Execution(
+            config, usable, directory, tables, coevolution, _new_store(directory, config, tables)
+        )
     except BaseException:
         coevolution.close()
         raise
