@@ -13,10 +13,9 @@ import toys
 from recorded import rewritten
 
 from evoframe import Plugins, RunConfig, load_run, run
+from evoframe.contract.config import Source
 from evoframe.errors import InputError
 from evoframe.files.locks import acquire_lock
-from evoframe.registry.observers import Observers
-from evoframe.contract.config import Source
 from evoframe.registry.registry import Skipped
 from evoframe.runs.doctor import Check, check_installation, check_run
 from evoframe.runs.starting import prepare

@@ -15,15 +15,13 @@ from typing import Any
 import numpy as np
 import pytest
 import toys
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from modules import plugin
 from numpy.typing import NDArray
 from recorded import assert_same_result, rows
 
 import evoframe.record.store
-from evoframe.files import writing
 from evoframe import (
     ConfigurationError,
     Design,
@@ -35,10 +33,10 @@ from evoframe import (
     load_run,
     run,
 )
+from evoframe.contract.config import Source
+from evoframe.files import writing
 from evoframe.files.locks import acquire_lock
 from evoframe.record.champion import design_from_json, design_to_json, read_champion
-from evoframe.registry.observers import Observers
-from evoframe.contract.config import Source
 from evoframe.registry.registry import Plugins
 from evoframe.runs.starting import prepare
 

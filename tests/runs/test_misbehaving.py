@@ -14,8 +14,8 @@ import toys
 from recorded import assert_same_result
 
 from evoframe import Member, Outcome, Plugins, RunConfig, RunError, load_run, resume, run
-from evoframe.messages import full_text
 from evoframe.errors import ComponentError
+from evoframe.messages import full_text
 
 Load = Callable[..., RunConfig]
 

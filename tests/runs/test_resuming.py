@@ -10,19 +10,17 @@ from pathlib import Path
 
 import pytest
 import toys
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from opening import configuration_of, has_begun, reopened
 from recorded import assert_same_result, rewritten, rows
 
 import evoframe.record.provenance
 from evoframe import ConfigurationError, InputError, Plugins, RunConfig, RunError, load_run, resume, run
+from evoframe.contract.config import Source
+from evoframe.documents.trees import differences
 from evoframe.files.locks import acquire_lock
 from evoframe.record.checksums import Checksums
-from evoframe.documents.trees import differences
 from evoframe.record.store import Store
-from evoframe.registry.observers import Observers
-from evoframe.contract.config import Source
 from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]

@@ -29,9 +29,8 @@ from evoframe import (
     run,
     verify,
 )
-from evoframe.record import store
-from evoframe.registry.observers import Observers
 from evoframe.contract.config import Source
+from evoframe.record import store
 from evoframe.registry.registry import Plugins
 from evoframe.runs.starting import prepare
 
