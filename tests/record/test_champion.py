@@ -12,15 +12,17 @@ import pytest
 from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
+from turns import best_pairs
 
-from evoframe import (
-    Design,
-    InputError,
-    RunConfig,
-    RunError,
-    run,
+from evoframe import BestPair, Design, InputError, RunConfig, RunError, run
+from evoframe.files.writing import json_text
+from evoframe.record.champion import (
+    champion_document,
+    champion_from_json,
+    design_from_json,
+    design_to_json,
+    read_champion,
 )
-from evoframe.record.champion import design_from_json, design_to_json, read_champion
 
 Load = Callable[..., RunConfig]
 
@@ -99,3 +101,42 @@ def test_a_design_that_is_no_array_of_numbers_is_refused_when_it_is_recorded() -
         design_to_json(Design({"a": np.array([np.nan])}))
     with pytest.raises(RunError, match="but complex128"):
         design_to_json(Design({"a": np.array([1j])}))
+
+
+@given(best_pairs())
+def test_a_champion_is_what_its_document_says(pair: BestPair) -> None:
+    simulation = {"simulator": {"name": "toy-product", "limit": 2.5}, "objective": {"name": "toy-value"}}
+    champion = champion_from_json(json_text(champion_document(pair, simulation)))
+    assert (champion.score, champion.genomes, champion.simulation) == (pair.score, pair.genomes, simulation)
+    assert design_to_json(champion.design) == design_to_json(pair.design)
+
+
+@pytest.mark.parametrize(
+    ("given_array", "message"),
+    [
+        ({"dtype": "uint8", "shape": [1], "values": [256]}, "a: uint8 cannot hold|out of bounds"),
+        ({"dtype": "float32", "shape": [1], "values": [0.1]}, "a: float32 cannot hold the values"),
+        ({"dtype": "float64", "shape": [1], "values": [1]}, "a: expected values of type float64"),
+        ({"dtype": "int64", "shape": [1], "values": [True]}, "a: expected values of type int64"),
+        ({"dtype": "int64", "shape": [-1], "values": [1, 2]}, "a: expected the lengths of axes"),
+        ({"dtype": "int64", "shape": [True], "values": [1]}, "a: expected the lengths of axes"),
+    ],
+)
+def test_nothing_is_rounded_wrapped_or_guessed(given_array: dict[str, Any], message: str) -> None:
+    with pytest.raises((ValueError, OverflowError), match=message):
+        design_from_json({"a": given_array})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"format": True}, "format True, but"),
+        ({"score": 1}, "score: expected a number"),
+        ({"genomes": []}, "genomes: expected a table"),
+    ],
+)
+def test_a_document_with_other_kinds_of_values_is_no_champion(change: dict[str, Any], message: str) -> None:
+    pair = BestPair(0, 0.5, {}, {}, Design({}))
+    document = {**champion_document(pair, {}), **change}
+    with pytest.raises(ValueError, match=message):
+        champion_from_json(json.dumps(document))
