@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, strategies as st
 
 from evoframe import ConfigurationError, RunConfig
-from evoframe.config.layers import read_layers
+from evoframe.config.layers import Layer, Layers, layers_in, layers_of, read_layers
 from evoframe.config.resolve import load_config
+from evoframe.documents.trees import leaves
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 
@@ -164,3 +167,89 @@ class TestRefusal:
     def test_an_override_that_is_none_is_refused(self, toy_config: Load, text: str) -> None:
         with pytest.raises(ConfigurationError, match="--set"):
             toy_config(text)
+
+
+def components(names: st.SearchStrategy[str]) -> st.SearchStrategy[Any]:
+    options = st.dictionaries(st.sampled_from(["n", "weights"]), st.integers(0, 3), max_size=2)
+    return names | st.builds(lambda name, given: {"name": name, **given}, names, options)
+
+
+values = st.recursive(
+    st.integers(0, 3) | st.lists(st.integers(0, 3), max_size=2),
+    lambda inner: st.dictionaries(st.sampled_from(["x", "y"]), inner, min_size=1, max_size=2),
+    max_leaves=4,
+)
+trees = st.fixed_dictionaries(
+    {},
+    optional={"run": values, "aggregator": components(st.sampled_from(["hm", "wm"])), "simulator": values},
+)
+stacks = st.lists(trees, max_size=4).map(
+    lambda given: Layers(()).under([Layer(f"layer {number}", tree) for number, tree in enumerate(given)])
+)
+
+
+def at(tree: Any, key: str) -> Any:
+    for part in key.split("."):
+        tree = tree[part]
+    return tree
+
+
+class TestLayers:
+    @given(stacks)
+    def test_what_is_on_top_wins(self, stack: Layers) -> None:
+        if stack.layers:
+            top, merged = stack.layers[-1].tree, stack.merged()
+            assert all(at(merged, key) == value for key, value in leaves(top) if key)
+
+    @given(stacks)
+    def test_every_value_is_that_of_its_origin(self, stack: Layers) -> None:
+        by_origin = {layer.origin: layer.tree for layer in stack.layers}
+        for key, value in leaves(stack.merged()):
+            if key:
+                assert at(by_origin[stack.origin(tuple(key.split(".")))], key) == value
+
+    @given(stacks, stacks)
+    def test_what_was_merged_before_makes_no_difference(self, below: Layers, above: Layers) -> None:
+        whole = Layers((*below.layers, *above.layers))
+        parted = Layers((Layer("below", below.merged()), *above.layers))
+        assert parted.merged() == whole.merged()
+
+    @given(stacks)
+    def test_a_layer_that_is_repeated_at_once_changes_nothing(self, stack: Layers) -> None:
+        assert Layers((*stack.layers, *stack.layers[-1:])).merged() == stack.merged()
+
+    @given(stacks)
+    def test_a_component_has_options_of_its_own_only(self, stack: Layers) -> None:
+        """Those of another name below must not linger."""
+        layers = [layer.tree["aggregator"] for layer in stack.layers if "aggregator" in layer.tree]
+        if layers:
+            same = list(
+                itertools.takewhile(lambda table: table["name"] == layers[-1]["name"], reversed(layers))
+            )
+            expected = {key: value for table in reversed(same) for key, value in table.items()}
+            assert stack.merged()["aggregator"] == expected
+
+    @given(stacks)
+    def test_what_is_left_out_is_in_none(self, stack: Layers) -> None:
+        merged = stack.without("run", "aggregator").merged()
+        assert merged == {key: value for key, value in stack.merged().items() if key == "simulator"}
+
+    def test_one_string_is_no_list_of_overrides(self) -> None:
+        with pytest.raises(TypeError, match="overrides are a list of strings, not one string"):
+            Layers(()).under("run.seed=2")
+
+    def test_the_origin_of_what_nobody_set_is_the_nearest_table_around_it(self) -> None:
+        stack = Layers((Layer("below", {"run": {"seed": 1}}), Layer("above", {"aggregator": {"name": "hm"}})))
+        assert stack.origin(("run", "seed")) == stack.origin(("run", "sede")) == "below"
+        assert stack.origin(("aggregator", "weights[2]")) == "above"
+        assert stack.origin(("run",), ("aggregator",)) == "above"  # the latest of several
+
+
+def test_python_sets_dotted_keys_and_none_sets_nothing() -> None:
+    [layer] = layers_of({"run.seed": 3, "executor.workers": None})
+    assert (layer.origin, layer.tree) == ("run.seed=3", {"run": {"seed": 3}})
+
+
+def test_what_a_run_says_of_itself_is_no_setting() -> None:
+    tables = {"extends": False, "run": {"seed": 3}, "provenance": {"evoframe": "0.1.0"}}
+    assert layers_in(tables, "config.toml").merged() == {"run": {"seed": 3}}
