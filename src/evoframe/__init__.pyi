@@ -1,6 +1,9 @@
 # Where each name of the public API is defined; read by type checkers, and by lazy_loader in __init__.py.
 
 from ._version import __version__ as __version__
+from .analysis.api import load_study as load_study, report as report
+from .analysis.report import Report as Report
+from .analysis.statistics import Correction as Correction
 from .config.layers import Layer as Layer
 from .config.resolve import load_config as load_config
 from .contract.config import (
@@ -80,7 +83,6 @@ from .evolution.coevolution import Coevolution as Coevolution
 from .evolution.evaluation import Evaluator as Evaluator
 from .evolution.population import Population as Population
 from .messages import suggestion as suggestion
-from .notebook import load_study as load_study
 from .record.champion import Champion as Champion
 from .record.run import Run as Run, load_run as load_run, open_run as open_run
 from .record.verification import Finding as Finding, Verification as Verification

@@ -13,7 +13,7 @@ import pytest
 from opening import reopened
 from recorded import rewritten
 
-from evoframe import InputError, Plugins, Run, load_run, run
+from evoframe import InputError, Run, discover, load_run, run
 from evoframe.record.checksums import CHAINED, SINGLE
 
 TRIALS = 200
@@ -119,7 +119,7 @@ def test_a_change_by_hand_is_named(intact: Run, tmp_path: Path, statement: str, 
 
 
 def reopen(directory: Path) -> None:
-    reopened(directory, Plugins())
+    reopened(directory, discover())
 
 
 def test_what_is_damaged_is_not_resumed(intact: Run, tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ def test_what_is_damaged_is_not_resumed(intact: Run, tmp_path: Path) -> None:
         database.execute("UPDATE pairs SET score = 1.0 WHERE turn = 3 AND pair = 1")
     database.close()
     with pytest.raises(InputError, match="is damaged: pairs"):
-        reopened(tmp_path / "run", Plugins())
+        reopen(tmp_path / "run")
 
 
 def test_a_table_without_an_end_is_not_read(intact: Run, tmp_path: Path) -> None:

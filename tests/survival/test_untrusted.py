@@ -15,10 +15,14 @@ from click.testing import CliRunner
 from hypothesis import given, strategies as st
 from opening import is_finished, reopened
 
-from evoframe import EvoframeError, InputError, Plugins, Run, load_config, load_run, run
+from evoframe import EvoframeError, InputError, Run, discover, load_config, load_run, run
 from evoframe.cli import cli
 from evoframe.evolution.assembly import assemble
 from evoframe.record.champion import read_champion
+
+
+def reopen(directory: Path) -> None:
+    reopened(directory, discover())
 
 
 @pytest.fixture(scope="module")
@@ -35,10 +39,6 @@ def directory(finished: Run, tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     "name", ["run.lock", "run.db", "run.db-wal", "config.toml", "champion.json", ".champion.json.new", "x"]
 )
-def reopen(directory: Path) -> None:
-    reopened(directory, Plugins())
-
-
 @pytest.mark.parametrize("use", [load_run, is_finished, reopen])
 def test_links_are_not_followed(
     directory: Path, tmp_path: Path, name: str, use: Callable[[Path], object]

@@ -47,3 +47,11 @@ def test_the_page_names_every_hook_protocol_and_contract() -> None:
     assert set(protocols) <= set(evoframe.__all__)
     for name in [*hooks, *protocols, *testing.__all__]:
         assert f"`{name}" in PAGE, name
+
+
+@pytest.mark.parametrize("name", [name for name in evoframe.__all__ if name.startswith("Supports")])
+def test_the_page_names_every_optional_capability_with_its_members(name: str) -> None:
+    [row] = [line for line in PAGE.splitlines() if line.startswith("|") and f"`{name}`" in line]
+    own = [member for member in vars(getattr(evoframe, name)) if not member.startswith("_")]
+    assert own
+    assert all(f"`{member}" in row for member in own)

@@ -41,14 +41,16 @@ def report(
     that was simulated, and the averaged fitness. The page, report.html, has all in one file.
     """
     with needing_extra("report", "reports"):
-        from evoframe.analysis.report.report import write_report  # noqa: PLC0415 - takes a second, and an extra
+        from evoframe.analysis import report as room  # noqa: PLC0415 - takes a second, and an extra
+
+        write = room.report
     if out is not None and len(directories) > 1:
         raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
     for directory in directories:
-        target = out or directory / "report"
-        written = write_report(directory, target, plugins_of(ctx), correction)
+        written = write(directory, out=out, correction=correction, plugins=plugins_of(ctx))
         if is_quiet(ctx):
-            click.echo(target)
+            click.echo(written.directory)
         else:
             click.echo(written.words)
-            click.echo(f"{len(written.files)} files are in {target}; to be looked at: report.html", err=True)
+            place = f"{len(written.files)} files are in {written.directory}"
+            click.echo(f"{place}; to be looked at: report.html", err=True)

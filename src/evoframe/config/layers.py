@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
@@ -14,7 +13,7 @@ import attrs
 from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files import read_text
+from evoframe.files import parsed_toml, read_text
 from evoframe.messages import suggestion
 
 __all__ = [
@@ -135,34 +134,68 @@ def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
     return [layer_of(f"{key}={value!r}", key, value) for key, value in given.items()]
 
 
-def _chain(source: str, relative_to: Path, seen: tuple[str, ...]) -> list[Layer]:
-    """Return the layer of *source*, preceded by those that it extends."""
+@attrs.frozen
+class _Source:
+    """A preset or a file.
+
+    Attributes:
+        preset: The name of a preset, or ``None``.
+        path: The path of a file, or ``None``.
+    """
+
+    preset: str | None = None
+    path: Path | None = None
+
+    def __str__(self) -> str:
+        return f"preset '{self.preset}'" if self.path is None else str(self.path)
+
+    def is_the_same_as(self, other: _Source) -> bool:
+        if self.path is None or other.path is None:
+            return self == other
+        return self.path.resolve() == other.path.resolve()
+
+    def text(self) -> str:
+        if self.path is None:
+            return files("evoframe.config").joinpath("presets", f"{self.preset}.toml").read_text("utf-8")
+        return read_text(self.path, _LARGEST_FILE)
+
+
+def _chain(name: str, relative_to: Path, seen: tuple[_Source, ...]) -> list[Layer]:
+    """Return the layer of a preset or file, preceded by those that it extends."""
     asked = f"{seen[-1]}: extends: " if seen else ""
-    origin, text, folder = _read(source, relative_to, asked)
-    if any(_same_source(origin, other) for other in seen):
-        raise ConfigurationError(f"{origin}: extends itself: {' -> '.join([*seen, origin])}")
-    tree = _parsed(text, origin)
+    source = _source(name, relative_to, asked)
+    try:
+        text = source.text()
+    except InputError as error:
+        raise ConfigurationError(f"{asked}{error}") from error
+    if any(source.is_the_same_as(other) for other in seen):
+        raise ConfigurationError(f"{source}: extends itself: {' -> '.join(map(str, [*seen, source]))}")
+    tree = _parsed(text, str(source))
     tree.pop("provenance", None)  # what a run wrote about itself is no setting
-    base = tree.pop("extends", "paper" if origin != "preset 'paper'" else False)
+    layer = Layer(str(source), tree)
+    base = tree.pop("extends", False if source.preset == "paper" else "paper")
     if base is False:
-        return [Layer(origin, tree)]
+        return [layer]
     if not isinstance(base, str) or not base:
-        raise ConfigurationError(f"{origin}: extends: expected the name of a preset or file, or false")
-    return [*_chain(base, folder, (*seen, origin)), Layer(origin, tree)]
+        raise ConfigurationError(f"{source}: extends: expected the name of a preset or file, or false")
+    return [*_chain(base, source.path.parent if source.path else Path(), (*seen, source)), layer]
 
 
-def _same_source(origin: str, other: str) -> bool:
-    """Return whether two names mean one preset or one file."""
-    if "preset '" in (origin[:8], other[:8]):
-        return origin == other
-    return Path(origin).resolve() == Path(other).resolve()
+def _source(name: str, relative_to: Path, asked: str) -> _Source:
+    """Return the preset or file of a name; *asked* says in errors what wants it."""
+    known, path = preset_names(), relative_to / name
+    if name in known:
+        return _Source(preset=name)
+    if not name.endswith(".toml") and not path.exists():
+        raise ConfigurationError(
+            f"{asked}there is no preset '{name}'{suggestion(name, known, 'presets')}; "
+            "a file needs the ending .toml"
+        )
+    return _Source(path=path)
 
 
 def _parsed(text: str, origin: str) -> Tree:
-    try:
-        tree = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
-        raise ConfigurationError(f"{origin}: not valid TOML: {error}") from error
+    tree = parsed_toml(text, origin, ConfigurationError)
     _refuse_depth(tree, origin)
     return tree
 
@@ -175,24 +208,6 @@ def _refuse_depth(tree: Tree, origin: str) -> None:
         level = [item for values in inner for item in values if isinstance(item, dict | list)]
     if level:
         raise ConfigurationError(f"{origin}: tables and lists are nested more than {_DEEPEST} deep")
-
-
-def _read(source: str, relative_to: Path, asked: str) -> tuple[str, str, Path]:
-    """Return origin, text and folder of a preset or file; *asked* says in errors what wants it."""
-    if source in preset_names():
-        text = files("evoframe.config").joinpath("presets", f"{source}.toml").read_text(encoding="utf-8")
-        return f"preset '{source}'", text, Path()
-    path = relative_to / source
-    if not source.endswith(".toml") and not path.exists():
-        known = preset_names()
-        raise ConfigurationError(
-            f"{asked}there is no preset '{source}'{suggestion(source, known, 'presets')}; "
-            "a file needs the ending .toml"
-        )
-    try:
-        return str(path), read_text(path, _LARGEST_FILE), path.parent
-    except InputError as error:
-        raise ConfigurationError(f"{asked}{error}") from error
 
 
 def _override(text: str) -> Layer:

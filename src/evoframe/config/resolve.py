@@ -72,7 +72,7 @@ def resolved(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
     reading.refuse_missing(usable, settings.require)
     config = reading.config(usable, settings, label)
     if config is None:
-        raise ConfigurationError(_report(reading.faults, layers))
+        raise ConfigurationError(_listed(reading.faults, layers))
     return config
 
 
@@ -107,12 +107,11 @@ def named_simulator(
     return None
 
 
-def _line(fault: Fault, layers: Layers) -> str:
-    return f"{layers.origin(fault.path, fault.involves)}: {'.'.join(fault.path)}: {fault.message}"
-
-
-def _report(faults: list[Fault], layers: Layers) -> str:
-    lines = [_line(fault, layers) for fault in faults]
+def _listed(faults: list[Fault], layers: Layers) -> str:
+    lines = [
+        f"{layers.origin(fault.path, fault.involves)}: {'.'.join(fault.path)}: {fault.message}"
+        for fault in faults
+    ]
     if len(lines) == 1:
         return lines[0]
     return "\n  ".join([f"{len(lines)} faults in the configuration:", *lines])

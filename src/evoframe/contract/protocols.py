@@ -1,9 +1,8 @@
 """What a component must do.
 
 A component is a *frozen attrs class*: its fields are its options. What needs state while a run goes on is
-returned by ``start``. Any component may offer ``provenance() -> dict[str, str]``: what the record of a run
-should say of it (a kernel, the version of a library). The laws that each protocol names are tests in
-:mod:`evoframe.testing`.
+returned by ``start``. What a component may offer besides is in :mod:`evoframe.contract.optional`. The laws
+that each protocol names are tests in :mod:`evoframe.testing`.
 """
 
 from __future__ import annotations
@@ -86,8 +85,7 @@ class Encoder(Protocol):
 
     Laws: roles, shapes and dtypes as declared; pure; total: every network gives a design.
 
-    It may offer ``input_names`` and ``output_names``, each a tuple of words, one for each input or output:
-    what a figure of a network writes beside its nodes.
+    It may offer :class:`~evoframe.SupportsInputNames` and :class:`~evoframe.SupportsOutputNames`.
     """
 
     @property
@@ -154,9 +152,7 @@ class EvolverRun(Protocol):
 class Evolver(Protocol):
     """Options of an evolutionary algorithm that works on networks.
 
-    It may offer ``graph(genome, inputs, outputs) -> NetworkGraph``: what a figure draws of a genome whose
-    network has so many *inputs* and *outputs*. The genome is given as :meth:`EvolverRun.dump` gives it, but
-    perhaps from a file of anyone: a ``ValueError`` says what is wrong.
+    It may offer :class:`~evoframe.SupportsGraph`.
     """
 
     def check(self, size: int) -> None:
@@ -178,22 +174,10 @@ class Simulator(Protocol):
     once; recording more changes nothing; equal keys mean equal outcomes; a diverged simulation says so and at
     which step.
 
-    It may offer more, each on its own:
-
-    - ``read(path) -> [(label, design), ...]``: the designs of a file that it knows.
-    - ``settings_of(path) -> Mapping[str, Any] | None``: the options that a file brings with it, as TOML
-      values, or ``None``. It gives every option that matters, so that nothing of a preset lingers.
-    - ``formats: tuple[str, ...]`` and ``export(design, format) -> Export``: the files of other programs that
-      it writes. A format is named by the ending of its files; the same design gives the same bytes.
-    - ``variants(design, record) -> Sequence[Variant]``: what ``evoframe verify`` simulates beside the
-      unchanged design. The same arguments give the same variants.
-    - ``geometry(design, frames) -> Geometry``: what figures and the page of a report draw. One frame is the
-      design at rest; with more it is simulated, and looked at as often at most, from the start to the end or
-      to the divergence.
-    - ``random_controller(design, rng) -> Design``: the same body with a controller that is drawn at random,
-      for ``evoframe robustness``. The same state of *rng* gives bodies of the same shape the same controller,
-      whatever they are made of.
-    - ``published() -> [(label, design), ...]``: bodies of others, for ``evoframe robustness --published``.
+    It may offer more, each on its own: :class:`~evoframe.SupportsReading`,
+    :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsExport`,
+    :class:`~evoframe.SupportsVariants`, :class:`~evoframe.SupportsGeometry`,
+    :class:`~evoframe.SupportsRandomControllers` and :class:`~evoframe.SupportsPublished`.
     """
 
     @property
@@ -222,7 +206,7 @@ class Simulator(Protocol):
 class Objective(Protocol):
     """Turns the outcome of a simulation into a score, which is maximised.
 
-    Law: finite for every outcome that did not diverge. An objective may also have a ``unit``, such as ``m``.
+    Law: finite for every outcome that did not diverge. It may offer :class:`~evoframe.SupportsUnit`.
     """
 
     @property

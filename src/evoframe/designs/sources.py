@@ -43,32 +43,40 @@ class Job:
 
 
 def read_job(
-    path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins, *, runs: bool = False
+    source: Path | Run,
+    preset: str | None,
+    overrides: Sequence[str | Layer],
+    plugins: Plugins,
+    *,
+    runs: bool = False,
 ) -> Job:
-    """Read what *path* names, and decide how it is simulated.
+    """Read the designs of a source, and decide how they are simulated.
 
     A run and its ``champion.json`` are simulated as in the run, unless a *preset* is named. Of all other
     files the simulator says what they hold, and which settings they bring with them; these override the
     preset's, which is ``paper`` if none is named. *overrides* come last.
 
     Args:
-        path: A ``champion.json``, a file that the simulator reads, or a run's directory.
+        source: A run, which stands for its champion, or its directory; a ``champion.json``, or a file that
+            the simulator reads.
         preset: Name of a preset, or path of a TOML file.
         overrides: ``key=value``, or layers, as for :func:`~evoframe.load_config`.
         plugins: The plugins to choose from.
-        runs: Whether *path* may be a run's directory, which stands for its champion.
+        runs: Whether the directory of a run is accepted.
 
     Raises:
         InputError: The file cannot be read, or is something else.
         ConfigurationError: It cannot be simulated like this.
     """
-    if is_directory(path):
+    if isinstance(source, Run):
+        return _of_run(source, preset, overrides, plugins)
+    if is_directory(source):
         if not runs:
-            raise InputError(f"{path}: cannot be read: Is a directory; that of a run has a champion.json")
-        return _of_run(path, preset, overrides, plugins)
-    if path.suffix == ".json":
-        return _of_champion(path, preset, overrides, plugins)
-    return _of_file(path, preset, overrides, plugins)
+            raise InputError(f"{source}: cannot be read: Is a directory; that of a run has a champion.json")
+        with open_run(source) as run:
+            return _of_run(run, preset, overrides, plugins)
+    read = _of_champion if source.suffix == ".json" else _of_file
+    return read(source, preset, overrides, plugins)
 
 
 @contextlib.contextmanager
@@ -80,9 +88,8 @@ def naming(path: Path) -> Iterator[None]:
         raise type(error)(f"{path}: {error}") from error
 
 
-def _of_run(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    with open_run(path) as run:
-        champion = run.champion()
+def _of_run(run: Run, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
+    champion, path = run.champion(), run.directory
     own = read_layers(preset) if preset else layers_in(run.config, str(path / CONFIG_FILE))
     config = resolved(own.under(overrides), Path(preset or CONFIG_FILE).stem, plugins)
     _check_roles(path, champion.design, config)

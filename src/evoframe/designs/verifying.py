@@ -53,9 +53,9 @@ def verify(
         InputError: The file or directory cannot be read, or is something else.
         RunError: The verification cannot be made or kept.
     """
-    path = source.directory if isinstance(source, Run) else Path(source)
     overrides = layers_of({**settings, "executor.workers": workers})
-    job = read_job(path, preset, overrides, plugins or discover(), runs=True)
+    named = source if isinstance(source, Run) else Path(source)
+    job = read_job(named, preset, overrides, plugins or discover(), runs=True)
     verifications = verify_job(job)
     keep_of_job(job, verifications)
     return verifications

@@ -92,6 +92,7 @@ def _converter() -> Converter:
     converter.register_structure_hook_func(
         functools.partial(_is_a, tuple), functools.partial(_tuple, converter)
     )
+    converter.register_structure_hook_func(functools.partial(_is_a, dict), _table)
     converter.register_structure_hook_factory(attrs.has, functools.partial(_class_hook, converter))
     return converter
 
@@ -132,6 +133,13 @@ def _literal(value: Any, target: Any) -> Any:
         listed = ", ".join(found(choice) for choice in choices)
         raise ValueError(f"expected one of {listed}, found {found(value)}")
     return value
+
+
+def _table(value: Any, _: Any) -> dict[str, Any]:
+    """Return a table of anything: what its values must be is for others to say."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"expected a table, found {found(value)}")
+    return dict(value)
 
 
 def _tuple(converter: Converter, value: Any, target: Any) -> tuple[Any, ...]:
@@ -211,7 +219,7 @@ def _faults(error: BaseException, path: Path) -> Iterator[Fault]:
             yield Fault((*path, key), _unknown_key(key, error.cl))
     elif isinstance(error, KeyError):  # whose key may end the path already
         key = str(error.args[0])
-        yield Fault(path if path[-1] == key else (*path, key), "is missing")
+        yield Fault(path if path[-1:] == (key,) else (*path, key), "is missing")
     else:
         yield Fault(path, _plain(str(error)))
 

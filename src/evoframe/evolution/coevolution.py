@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import numbers
+import statistics
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Self, TypeAlias
@@ -86,7 +87,7 @@ class Coevolution:
         while self.turn < self.length:
             yield self._take_turn(self.turn % len(self.populations))
         if not self._fittest_have_met:
-            yield self._closing_meeting()
+            yield self._play([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
 
     def __enter__(self) -> Self:
         return self
@@ -132,7 +133,7 @@ class Coevolution:
         for population in self.populations:
             population.reproduce()
         met = first_meetings([len(population.genomes) for population in self.populations])
-        return self._play(met, range(len(self.populations)), _arithmetic_mean, started)
+        return self._play(met, range(len(self.populations)), statistics.fmean, started)
 
     def _take_turn(self, index: int) -> Turn:
         started = time.perf_counter()
@@ -140,9 +141,6 @@ class Coevolution:
         teams = list(zip(*self._chosen(index), strict=True))
         met = _meetings(index, len(self.populations[index].genomes), teams)
         return self._play(met, [index], self.aggregator.aggregate, started)
-
-    def _closing_meeting(self) -> Turn:
-        return self._play([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
 
     def _chosen(self, index: int) -> list[list[int]]:
         """Return the positions of the collaborators from each population but one.
@@ -224,12 +222,9 @@ class Coevolution:
         except ComponentError as error:
             if error.concerns:
                 raise
-            met = "; ".join(self._called(meetings[place]) for place in error.places)
-            raise attrs.evolve(error, concerns=met) from error
-
-    def _called(self, meeting: Meeting) -> str:
-        met = zip(self.populations, meeting, strict=True)
-        return " with ".join(population.called(position) for population, position in met)
+            met = (zip(self.populations, meetings[place], strict=True) for place in error.places)
+            names = (" with ".join(p.called(position) for p, position in pairs) for pairs in met)
+            raise attrs.evolve(error, concerns="; ".join(names)) from error
 
     def _pair(self, meeting: Meeting, score: Score) -> Pair:
         ids = tuple(
@@ -287,10 +282,6 @@ class _Loop:
     turn: int = attrs.field(validator=ge(-1))
     best_score: float | None
     fittest_have_met: bool
-
-
-def _arithmetic_mean(scores: Scores) -> float:
-    return math.fsum(scores) / len(scores)
 
 
 def _fitness(row: Sequence[float | None], fold: Fold, individual: str) -> float | None:

@@ -48,7 +48,8 @@ class Evaluator:
         """
         keys: list[bytes] = []
         with blaming("executor"), _finding_places(keys):
-            for scores in self.workers.map(self._simulate, self._batches(designs, count, keys)):
+            simulation = _Simulation(self.simulator, self.objective)
+            for scores in self.workers.map(simulation, self._batches(designs, count, keys)):
                 self._cache |= scores
                 self.simulations += len(scores)
         if any(key not in self._cache for key in keys):
@@ -86,10 +87,6 @@ class Evaluator:
         if not isinstance(key, bytes):
             raise ComponentError("simulator", f"gave a key that is no bytes, but {type(key).__name__}")
         return key
-
-    @property
-    def _simulate(self) -> _Simulation:
-        return _Simulation(self.simulator, self.objective)
 
 
 @contextlib.contextmanager

@@ -9,6 +9,7 @@ from typing import Any
 
 import attrs
 
+import evoframe
 from evoframe.errors import InputError
 from evoframe.files import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text, refuse_links
 from evoframe.record.champion import Champion, champion_from_json
@@ -139,6 +140,12 @@ class Run:
         if verification.score != self.champion().score:
             raise InputError(f"{path}: is about another champion; {again}")
         return verification
+
+    def report(
+        self, out: str | Path | None = None, *, correction: evoframe.Correction = "holm"
+    ) -> evoframe.Report:
+        """Write the report of this run: see :func:`evoframe.report`."""
+        return evoframe.report(self, out=out, correction=correction)
 
     def check(self) -> None:
         """Look at the form of the database, before anything in it is read; :func:`open_run` has done so.

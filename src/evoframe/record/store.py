@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.contract import Design, Pair, PopulationReport, Turn
+from evoframe.contract import Design, Turn
 from evoframe.errors import ComponentError, InputError, RunError
 from evoframe.files import Lock, json_text, remove, write_atomically, write_json
 from evoframe.record.champion import champion_document
@@ -127,18 +127,39 @@ class Store:
         champion = champion_document(turn.best_pair, self.simulation) if turn.best_pair else None
         with self._transaction():
             reports = sorted(turn.reports, key=lambda report: report.population)  # as the keys of the rows
-            self._insert("turns", [_turn_row(turn.index, report) for report in reports])
-            members = [row for report in reports for row in _individual_rows(turn.index, report)]
-            self._insert("individuals", members)
-            self._insert("pairs", _pair_rows(turn.index, turn.pairs))
-            work = turn.workload
-            self._insert("workload", [(turn.index, work.pairs, work.simulations, work.seconds)])
-            if champion:
-                self._insert("best_pairs", [(turn.index, champion["score"], json_text(champion))])
-            self._replace(
-                "state", [(part, turn.index, _state(part, values)) for part, values in state.items()]
+            index, work = turn.index, turn.workload
+            self._insert(
+                "turns",
+                (
+                    (index, r.population, r.generation, r.best, r.best_so_far, r.standing_champion, r.mean)
+                    for r in reports
+                ),
             )
-        self.last_turn = turn.index
+            self._insert(
+                "individuals",
+                (
+                    (
+                        index,
+                        r.population,
+                        i,
+                        m.id,
+                        m.species,
+                        m.genome_size,
+                        m.age,
+                        m.fitness,
+                        int(m.diverged),
+                    )
+                    for r in reports
+                    for i, m in enumerate(r.members)
+                ),
+            )
+            pairs = enumerate(turn.pairs)
+            self._insert("pairs", ((index, i, *p.genomes, p.score, p.diverged_at) for i, p in pairs))
+            self._insert("workload", [(index, work.pairs, work.simulations, work.seconds)])
+            if champion:
+                self._insert("best_pairs", [(index, champion["score"], json_text(champion))])
+            self._replace("state", [(part, index, _state(part, values)) for part, values in state.items()])
+        self.last_turn = index
         if champion and turn.best_pair:
             self._unwritten = champion, turn.best_pair.design
         # A turn that takes long is likely to be followed by such a one.
@@ -259,35 +280,3 @@ def _opened(path: Path) -> sqlite3.Connection:
     except sqlite3.Error as error:
         raise InputError(f"{path}: cannot be written: {error}") from error
     return database
-
-
-def _turn_row(turn: int, report: PopulationReport) -> tuple[Any, ...]:
-    return (
-        turn,
-        report.population,
-        report.generation,
-        report.best,
-        report.best_so_far,
-        report.standing_champion,
-        report.mean,
-    )
-
-
-def _individual_rows(turn: int, report: PopulationReport) -> Iterator[tuple[Any, ...]]:
-    for position, member in enumerate(report.members):
-        yield (
-            turn,
-            report.population,
-            position,
-            member.id,
-            member.species,
-            member.genome_size,
-            member.age,
-            member.fitness,
-            int(member.diverged),
-        )
-
-
-def _pair_rows(turn: int, pairs: tuple[Pair, ...]) -> Iterator[tuple[Any, ...]]:
-    for index, pair in enumerate(pairs):
-        yield (turn, index, *pair.genomes, pair.score, pair.diverged_at)

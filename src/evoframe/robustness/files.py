@@ -13,8 +13,9 @@ from typing import Any
 
 import attrs
 import numpy as np
+from attrs.validators import ge
 
-from evoframe.documents import as_read, differences
+from evoframe.documents import differences, structure, unstructure
 from evoframe.errors import InputError
 from evoframe.files import is_file, parsed_json, read_text, write_atomically
 from evoframe.robustness.measurement import Body, Divergence, Robustness, Setting
@@ -65,12 +66,16 @@ def write_measurement(measured: Robustness, directory: Path) -> list[Path]:
 def document_of(measured: Robustness) -> dict[str, Any]:
     """Return what was measured, and which simulations diverged, as JSON values."""
     setting = measured.setting
-    lost = [
-        {"controller": each.controller, "body": setting.bodies[each.body].label, "step": each.step}
-        for each in measured.diverged
-    ]
-    digest = hashlib.sha256(scores_text(measured).encode()).hexdigest()
-    return {"format": _FORMAT, **_tables(setting), "diverged": lost, "scores_sha256": digest}
+    lost = [_Lost(each.controller, setting.bodies[each.body].label, each.step) for each in measured.diverged]
+    document: dict[str, Any] = unstructure(
+        _Document(
+            **attrs.asdict(setting, recurse=False),
+            format=_FORMAT,
+            diverged=tuple(lost),
+            scores_sha256=hashlib.sha256(scores_text(measured).encode()).hexdigest(),
+        )
+    )
+    return document
 
 
 def refuse_another(directory: Path, setting: Setting, *, force: bool = False) -> None:
@@ -119,21 +124,10 @@ def read_robustness(directory: str | Path) -> Robustness:
         scores = _read_scores(text, found)
     except (ValueError, csv.Error) as error:
         raise InputError(f"{path}: not as evoframe writes it: {error}") from error
-    if hashlib.sha256(text.encode()).hexdigest() != found.digest:
+    if hashlib.sha256(text.encode()).hexdigest() != found.scores_sha256:
         raise InputError(f"{path}: is not the measurement that {SETTING_FILE} describes; measure again")
     scores.setflags(write=False)
-    return Robustness(found.setting, scores, found.diverged)
-
-
-def _tables(setting: Setting) -> dict[str, Any]:
-    bodies = [attrs.asdict(body) for body in setting.bodies]
-    return {
-        "seed": setting.seed,
-        "controllers": setting.controllers,
-        "unit": setting.unit,
-        "simulation": as_read(setting.simulation),
-        "bodies": bodies,
-    }
+    return Robustness(found.setting, scores, found.divergences())
 
 
 def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
@@ -147,19 +141,50 @@ def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
         body.label if labelled else str(number): f"{body.digest[:16]} in group {groups.index(body.group) + 1}"
         for number, body in enumerate(setting.bodies, start=1)
     }
-    return {**_tables(setting), "bodies": bodies}
+    return {**unstructure(setting), "bodies": bodies}
 
 
 @attrs.frozen
-class _Described:
-    """What stands in the file of a setting."""
+class _Lost:
+    """A simulation that diverged, as it stands in the file of a setting."""
 
-    setting: Setting
-    diverged: tuple[Divergence, ...]
-    digest: str
+    controller: int = attrs.field(validator=ge(0))
+    body: str
+    step: int = attrs.field(validator=ge(0))
 
 
-def _document(path: Path) -> _Described:
+@attrs.frozen
+class _Document:
+    """The file of a setting: the fields of :class:`Setting`, and what belongs to the scores."""
+
+    format: int
+    seed: int = attrs.field(validator=ge(0))
+    controllers: int = attrs.field(validator=ge(1))
+    unit: str
+    simulation: dict[str, Any]
+    bodies: tuple[Body, ...]
+    diverged: tuple[_Lost, ...]
+    scores_sha256: str
+
+    @property
+    def setting(self) -> Setting:
+        return Setting(self.seed, self.controllers, self.unit, self.simulation, self.bodies)
+
+    def divergences(self) -> tuple[Divergence, ...]:
+        """Return the places of the scores that are missing.
+
+        Raises:
+            ValueError: Two bodies have one label, or one that is missing in a score is none of them.
+        """
+        columns = {body.label: column for column, body in enumerate(self.bodies)}
+        if not 0 < len(columns) == len(self.bodies):
+            raise ValueError("bodies: expected at least one, and different labels")
+        if strange := [lost.body for lost in self.diverged if lost.body not in columns]:
+            raise ValueError(f"diverged: {strange[0]!r} is not one of the bodies")
+        return tuple(Divergence(lost.controller, columns[lost.body], lost.step) for lost in self.diverged)
+
+
+def _document(path: Path) -> _Document:
     try:
         document = parsed_json(read_text(path, _LARGEST))
         if not isinstance(document, Mapping) or "bodies" not in document:
@@ -167,53 +192,14 @@ def _document(path: Path) -> _Described:
         if document.get("format") is True or document.get("format") != _FORMAT:
             found = document.get("format")
             raise ValueError(f"format {found!r}, but this evoframe reads format {_FORMAT}")  # noqa: TRY301
-        return _described(document)
+        try:
+            described = structure(document, _Document, ())
+            described.divergences()
+        except ValueError as error:
+            raise ValueError(f"not as evoframe writes it: {error}") from error
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
-
-
-def _described(document: Mapping[str, Any]) -> _Described:
-    """Return what a document describes.
-
-    Raises:
-        ValueError: It is damaged.
-    """
-    try:
-        bodies = tuple(Body(**body) for body in document["bodies"])
-        given = {key: document[key] for key in ("seed", "controllers", "unit", "simulation")}
-        setting = Setting(**given, bodies=bodies)
-        columns = {body.label: column for column, body in enumerate(bodies)}
-        lost = [Divergence(d["controller"], columns[d["body"]], d["step"]) for d in document["diverged"]]
-        kept = {key: document[key] for key in ("diverged", "scores_sha256")}
-        same = _text(document) == _text({"format": _FORMAT, **_tables(setting), **kept})
-        digest = document["scores_sha256"]
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"not as evoframe writes it: {type(error).__name__}: {error}") from error
-    if not same or not _sound(setting, lost):
-        raise ValueError("not as evoframe writes it: a value is of the wrong kind")
-    return _Described(setting, tuple(lost), digest)
-
-
-def _text(document: Any) -> str:
-    return json.dumps(document, sort_keys=True)
-
-
-def _sound(setting: Setting, lost: list[Divergence]) -> bool:
-    """Return whether values are of the kind that they must be."""
-    texts = [setting.unit, *(text for body in setting.bodies for text in attrs.astuple(body))]
-    numbers = [
-        setting.seed,
-        setting.controllers,
-        *(each.controller for each in lost),
-        *(e.step for e in lost),
-    ]
-    labels = {body.label for body in setting.bodies}
-    return (
-        all(isinstance(text, str) for text in texts)
-        and all(type(number) is int and number >= 0 for number in numbers)
-        and isinstance(setting.simulation, Mapping)
-        and 0 < len(labels) == len(setting.bodies)
-    )
+    return described
 
 
 def scores_text(measured: Robustness) -> str:
@@ -226,7 +212,7 @@ def scores_text(measured: Robustness) -> str:
     return text.getvalue()
 
 
-def _read_scores(text: str, found: _Described) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _read_scores(text: str, found: _Document) -> np.ndarray[Any, np.dtype[np.float64]]:
     setting = found.setting
     header, *rows = [*csv.reader(io.StringIO(text))] or [[]]
     if header != [_FIRST, *(body.label for body in setting.bodies)]:
@@ -236,7 +222,7 @@ def _read_scores(text: str, found: _Described) -> np.ndarray[Any, np.dtype[np.fl
         raise ValueError(f"expected a line for each of {setting.controllers} controllers")
     scores = np.array([[*_numbers(row, len(setting.bodies))] for row in rows])
     empty = {(int(row), int(column)) for row, column in np.argwhere(np.isnan(scores))}
-    if empty != {(each.controller, each.body) for each in found.diverged}:
+    if empty != {(each.controller, each.body) for each in found.divergences()}:
         raise ValueError(f"scores are missing elsewhere than {SETTING_FILE} says")
     return scores
 

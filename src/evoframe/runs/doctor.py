@@ -11,6 +11,7 @@ from typing import Any, Literal, TypeAlias
 
 import attrs
 
+from evoframe.messages import full_text
 from evoframe.record import CHAINED, CHAMPION_FILE, Run, SINGLE, open_unchecked, provenance_of
 from evoframe.contract import RunConfig
 from evoframe.errors import EvoframeError, InputError
@@ -76,11 +77,14 @@ def _check_files(run: Run, plugins: Plugins) -> Iterator[Check]:
     if readable.state == "problem":
         return
     yield (sound := _checked("database", lambda: _database(run)))
-    configurations: list[RunConfig] = []
-    yield (resolved := _checked("configuration", lambda: _configuration(run, plugins, configurations)))
-    if "problem" in (sound.state, resolved.state):
+    try:
+        config = configuration_of(run, (), plugins)
+    except EvoframeError as error:
+        yield Check("configuration", "problem", full_text(error))
         return
-    [config] = configurations
+    yield Check("configuration", "ok", "can be used with the plugins that are installed")
+    if sound.state == "problem":
+        return
     yield _versions_then_and_now(run, config)
     yield _checked("turns", lambda: _turns(run, config))
     yield _checked("state", lambda: _state(run, config))
@@ -91,7 +95,7 @@ def _checked(subject: str, look: Callable[[], str]) -> Check:
     try:
         return Check(subject, "ok", look())
     except EvoframeError as error:
-        return Check(subject, "problem", str(error))
+        return Check(subject, "problem", full_text(error))
 
 
 @contextlib.contextmanager
@@ -131,11 +135,6 @@ def _database(run: Run) -> str:
         raise InputError(f"damaged: {'; '.join(damage)}")
     count = sum(len(run.rows(table)) for table in (*CHAINED, *SINGLE))  # compares their checksums
     return f"{count:,} rows, all as they were saved"
-
-
-def _configuration(run: Run, plugins: Plugins, found: list[RunConfig]) -> str:
-    found.append(configuration_of(run, (), plugins))
-    return "can be used with the plugins that are installed"
 
 
 def _versions_then_and_now(run: Run, config: RunConfig) -> Check:

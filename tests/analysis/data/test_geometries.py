@@ -65,4 +65,4 @@ def test_the_simulator_is_blamed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(toys.Product, "geometry", geometry, raising=False)
     with pytest.raises(ComponentError, match=r"^simulator: ValueError: geometry\(\) gave vertices"):
-        load_champion(made.directory, plugins)
+        load_champion(made, plugins)

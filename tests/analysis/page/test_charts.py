@@ -14,7 +14,7 @@ from evoframe import run
 from evoframe.analysis.data.studies import View
 from evoframe.analysis.figures.lines import Line, lines_of_run
 from evoframe.analysis.page.charts import finals_chart, lines_chart
-from evoframe.analysis.page.page import Chart
+from evoframe.analysis.page.html import Chart
 from evoframe.study.rows import Row
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import attrs
 
@@ -11,7 +10,13 @@ from evoframe.analysis.data.geometries import checked
 from evoframe.contract.blame import blaming
 from evoframe.contract.config import RunConfig
 from evoframe.contract.drawings import Geometry, NetworkGraph
-from evoframe.contract.optional import SupportsGeometry, unit_of
+from evoframe.contract.optional import (
+    SupportsGeometry,
+    SupportsGraph,
+    SupportsInputNames,
+    SupportsOutputNames,
+    unit_of,
+)
 from evoframe.designs.sources import naming, read_job
 from evoframe.errors import InputError
 from evoframe.record.run import Run
@@ -61,20 +66,18 @@ class ChampionData:
     verification: Verification | None
 
 
-def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
-    """Return what is shown of the champion of the run in *directory*.
+def load_champion(run: Run, plugins: Plugins) -> ChampionData:
+    """Return what is shown of the champion of a run.
 
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
-        InputError: It is no run's directory, has no champion yet, or is damaged.
+        InputError: It has no champion yet, or is damaged.
         ComponentError: What its simulator or an evolver gives cannot be drawn.
     """
-    job = read_job(directory, None, (), plugins, runs=True)
-    run, [design], config = job.run, job.designs, job.config
-    if run is None:
-        raise InputError(f"{directory}: is no run's directory")
+    job = read_job(run, None, (), plugins)
+    [design], config = job.designs, job.config
     simulator, objective = config.simulator.component, config.objective.component
-    with naming(directory), blaming("simulator"):
+    with naming(run.directory), blaming("simulator"):
         geometry = (
             checked(simulator.geometry(design, _FRAMES)) if isinstance(simulator, SupportsGeometry) else None
         )
@@ -92,14 +95,14 @@ def load_champion(directory: Path, plugins: Plugins) -> ChampionData:
 def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
     for name, genome in run.champion().genomes.items():
         population = config.populations.get(name)
-        graph = getattr(population.evolver.component, "graph", None) if population else None
-        if population is None or graph is None:
+        if population is None or not isinstance(population.evolver.component, SupportsGraph):
             continue
         encoder = population.encoder.component
         with blaming(f"populations.{name}.evolver"):
             try:
-                drawn = graph(genome, encoder.inputs, encoder.outputs)
+                drawn = population.evolver.component.graph(genome, encoder.inputs, encoder.outputs)
             except ValueError as error:
                 raise InputError(f"{run.directory}: the champion's genome of '{name}': {error}") from error
-        inputs, outputs = (tuple(getattr(encoder, key, ())) for key in ("input_names", "output_names"))
+        inputs = encoder.input_names if isinstance(encoder, SupportsInputNames) else ()
+        outputs = encoder.output_names if isinstance(encoder, SupportsOutputNames) else ()
         yield DrawnNetwork(name, drawn, inputs, outputs)

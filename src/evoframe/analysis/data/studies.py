@@ -19,7 +19,7 @@ from evoframe.registry.registry import Plugins
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
 from evoframe.study.names import called, headings, title_of
-from evoframe.study.plan import Study, read_study, shown
+from evoframe.study.plan import read_study, shown
 from evoframe.study.rows import Row
 
 __all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
@@ -44,6 +44,7 @@ class StudyData:
         best_run: The directory of the run with the best pair, of those whose directories are there.
         settings: The study as it stands in its file.
         values: Key of the grid -> what stands for a value in rows -> the value, if it is a number or a text.
+        directory: Its directory.
     """
 
     label: str
@@ -55,11 +56,18 @@ class StudyData:
     best_run: Path | None = None
     settings: str = attrs.field(default="", repr=False)
     values: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict, repr=False)
+    directory: Path = Path()
 
     @property
     def frame(self) -> pd.DataFrame:
         """One line for each run: the keys of the grid, and all figures."""
-        return pd.DataFrame([{**self._settings(row), **_figures(row)} for row in self.rows])
+        others = {"settings", "score_curve", "fitness_curve"}
+        return pd.DataFrame(
+            [
+                {**self._settings(row), **attrs.asdict(row, filter=lambda field, _: field.name not in others)}
+                for row in self.rows
+            ]
+        )
 
     @property
     def curves(self) -> pd.DataFrame:
@@ -102,7 +110,13 @@ class StudyData:
             View(title or self.label, names[self.keys[-1]], groups)
             for title, groups in zip(titles, found.values(), strict=True)
         ]
-        return [*views, _best(views, yardstick)] if len(views) > 1 else views
+        if len(views) < 2:
+            return views
+        best: dict[str, Sequence[Row]] = {}
+        for view in views:
+            name = ranked(view.values(yardstick))[0].name
+            best[f"{name} ({view.title})"] = view.groups[name]
+        return [*views, View("best of each", views[0].key, best)]
 
 
 @attrs.frozen
@@ -124,14 +138,6 @@ class View:
         return {name: [getattr(row, yardstick) for row in rows] for name, rows in self.groups.items()}
 
 
-def _best(views: Sequence[View], yardstick: Yardstick) -> View:
-    best: dict[str, Sequence[Row]] = {}
-    for view in views:
-        name = ranked(view.values(yardstick))[0].name
-        best[f"{name} ({view.title})"] = view.groups[name]
-    return View("best of each", views[0].key, best)
-
-
 def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:
     """Return a study and what is finished of it.
 
@@ -150,34 +156,21 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
     imported = imported_rows(study, directory)
     statuses = survey(study, directory, imported)
     rows = gather(statuses, imported)
+    units = {unit_of(cell.config.objective.component) for cell in study.cells}
+    first, *others = [cell.config.simulation() for cell in study.cells]
     here = {run.directory: row.score for run, row in rows.items() if statuses[run].state == "finished"}
     return StudyData(
         label=shown_name(directory),
         keys=tuple(study.grid),
-        unit=_unit(study),
+        unit=units.pop() if len(units) == 1 else "",
         planned=len(statuses),
         rows=tuple(rows.values()),
-        alike=_are_alike(study),
+        alike=not any(differences(first, other) for other in others),
         best_run=max(here, key=here.__getitem__, default=None),
         settings=read_text(directory / STUDY_FILE, LARGEST_DOCUMENT),
         values={
             key: {shown(value): value for value in values if isinstance(value, str | int | float)}
             for key, values in study.grid.items()
         },
+        directory=directory,
     )
-
-
-def _are_alike(study: Study) -> bool:
-    first, *others = [cell.config.simulation() for cell in study.cells]
-    return not any(differences(first, other) for other in others)
-
-
-def _unit(study: Study) -> str:
-    units: Sequence[str] = [unit_of(cell.config.objective.component) for cell in study.cells]
-    return units[0] if len(set(units)) == 1 else ""
-
-
-def _figures(row: Row) -> dict[str, Any]:
-    figures = attrs.asdict(row, filter=lambda field, _: not field.name.endswith("_curve"))
-    del figures["settings"]
-    return figures

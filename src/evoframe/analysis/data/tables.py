@@ -51,17 +51,14 @@ class Compared:
 
 def comparisons(data: StudyData, correction: Correction = "holm") -> list[Compared]:
     """Return what is to be said of each view on each yardstick."""
-    return [
-        _compared(view, yardstick, correction) for yardstick in YARDSTICKS for view in data.views(yardstick)
-    ]
-
-
-def _compared(view: View, yardstick: Yardstick, correction: Correction) -> Compared:
-    values = view.values(yardstick)
-    if len(values) == 1:
-        return Compared(view, yardstick, ranked(values), None)
-    comparison = compare(values, correction)
-    return Compared(view, yardstick, comparison.groups, comparison)
+    found = []
+    for yardstick in YARDSTICKS:
+        for view in data.views(yardstick):
+            values = view.values(yardstick)
+            comparison = compare(values, correction) if len(values) > 1 else None
+            groups = comparison.groups if comparison else ranked(values)
+            found.append(Compared(view, yardstick, groups, comparison))
+    return found
 
 
 def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -37,12 +36,19 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
     axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     corners = [part.vertices[frame][part.faces] for part in geometry.parts]
     colours = [_shaded(part, faces) for part, faces in zip(geometry.parts, corners, strict=True)]
+    edges = [
+        np.tile(
+            [*(0.4 * np.array(to_rgb(part.colour))), 1.0 if part.opacity == 1.0 else 0.3 * part.opacity],
+            (len(part.faces), 1),
+        )
+        for part in geometry.parts
+    ]
     # One collection: faces of several are not drawn from back to front.
     axes.add_collection3d(
         Poly3DCollection(
             np.concatenate(corners),
             facecolors=np.concatenate(colours),
-            edgecolors=np.concatenate([_edges(part) for part in geometry.parts]),
+            edgecolors=np.concatenate(edges),
             linewidths=0.25,
             clip_on=False,
         )
@@ -51,7 +57,17 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
     extent = _arrange(axes, all_corners.min(axis=0), all_corners.max(axis=0))
     tips = _draw_directions(axes, all_corners.min(axis=0), 0.12 * extent.max())
     _fit(figure, axes, np.concatenate([all_corners, tips]))
-    _legend(figure, geometry.parts)
+    figure.legend(
+        handles=[
+            Patch(facecolor=(*to_rgb(part.colour), max(part.opacity, 0.2)), label=part.name)
+            for part in geometry.parts
+        ],
+        loc="lower center",
+        ncols=len(geometry.parts),
+        frameon=False,
+        fontsize=7,
+        handlelength=1.0,
+    )
     _write(figure, 0.04, title, size=9)
     _write(figure, 0.22, "\u2009\u00d7\u2009".join(f"{x:.3g}" for x in extent) + " m", size=7)
     return figure
@@ -70,11 +86,6 @@ def _shaded(part: GeometryPart, faces: NDArray[np.float64]) -> NDArray[np.float6
     light = 0.7 + 0.3 * np.clip(normals @ _LIGHT, 0.0, 1.0)
     colour = light[:, None] * np.array(to_rgb(part.colour))
     return np.column_stack([colour, np.full(len(faces), part.opacity)])
-
-
-def _edges(part: GeometryPart) -> NDArray[np.float64]:
-    shade = 0.4 * np.array(to_rgb(part.colour))
-    return np.tile([*shade, 1.0 if part.opacity == 1.0 else 0.3 * part.opacity], (len(part.faces), 1))
 
 
 def _arrange(axes: Any, least: NDArray[np.float64], most: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -109,16 +120,3 @@ def _fit(figure: Figure, axes: Any, points: NDArray[np.float64]) -> None:
     figure.set_figheight(height)
     corner = 0.5 * (COLUMN - side * (left + right)) / COLUMN, (_BELOW - side * low) / height
     axes.set_position((*corner, side / COLUMN, side / height))
-
-
-def _legend(figure: Figure, parts: Sequence[GeometryPart]) -> None:
-    figure.legend(
-        handles=[
-            Patch(facecolor=(*to_rgb(part.colour), max(part.opacity, 0.2)), label=part.name) for part in parts
-        ],
-        loc="lower center",
-        ncols=len(parts),
-        frameon=False,
-        fontsize=7,
-        handlelength=1.0,
-    )

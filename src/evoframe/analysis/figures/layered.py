@@ -100,7 +100,11 @@ def layered(graph: NetworkGraph) -> Layout:
     depend on stands before those.
     """
     columns = _columns(graph)
-    paths = [_path(link, index, columns) for index, link in enumerate(graph.links)]
+    paths = []
+    for index, link in enumerate(graph.links):
+        first, last = columns[link.start], columns[link.end]
+        tracks = [_Item(column, index, is_track=True) for column in range(first + 1, last)]
+        paths.append([_Item(first, link.start), *tracks, _Item(last, link.end)])
     grid = _ordered(_grid(graph, columns, paths))
     middles = _heights(grid)
     ends = _ports(graph.links, paths, middles)
@@ -148,12 +152,6 @@ def _sorted(nodes: Iterable[int], links: Iterable[NetworkLink]) -> tuple[list[in
         except CycleError as error:
             closing = tuple(error.args[1][-2:])
             forward = [link for link in forward if (link.start, link.end) != closing]
-
-
-def _path(link: NetworkLink, index: int, columns: Mapping[int, int]) -> list[_Item]:
-    first, last = columns[link.start], columns[link.end]
-    tracks = [_Item(column, index, is_track=True) for column in range(first + 1, last)]
-    return [_Item(first, link.start), *tracks, _Item(last, link.end)]
 
 
 def _grid(graph: NetworkGraph, columns: Mapping[int, int], paths: Sequence[Sequence[_Item]]) -> _Grid:

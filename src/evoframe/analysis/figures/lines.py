@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +11,7 @@ from evoframe.analysis.data.studies import View, Yardstick
 from evoframe.analysis.data.units import NAMES, factor_of
 from evoframe.analysis.statistics.groups import FEWEST
 from evoframe.record.run import Run
-from evoframe.study.rows import Row, score_curve
+from evoframe.study.rows import score_curve
 
 __all__ = ["Line", "lines_of_run", "lines_of_view"]
 
@@ -57,7 +55,9 @@ def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line
     """
     drawn = []
     for number, (name, rows) in enumerate(view.groups.items()):
-        curves = _curves(rows, yardstick) * factor_of(unit)
+        found = [curve for row in rows if (curve := getattr(row, f"{yardstick}_curve"))]
+        length = min(map(len, found), default=0)
+        curves = np.array([curve[:length] for curve in found], dtype=np.float64) * factor_of(unit)
         if curves.size:
             band = _band(curves) if len(curves) >= FEWEST else None
             drawn.append(Line(f"{name}: {len(curves)}", curves.mean(axis=0), number, number, band))
@@ -83,32 +83,21 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
     return [*drawn, Line(NAMES["score"], score, _BLACK, _DOTTED)]  # on top: the best fitness is hardly less
 
 
-def _curves(rows: Sequence[Row], yardstick: Yardstick) -> Floats:
-    """Return the curves of rows that have one, as far as all go: ``float64[rows, generations]``."""
-    found = [curve for row in rows if (curve := getattr(row, f"{yardstick}_curve"))]
-    length = min(map(len, found), default=0)
-    return np.array([curve[:length] for curve in found], dtype=np.float64)
-
-
 def _band(curves: Floats) -> tuple[Floats, Floats]:
     """Return the 95 % interval of the mean of each column; a gap where a run has no value."""
-    low, high = np.full((2, curves.shape[1]), np.nan)
     known = np.isfinite(curves).all(axis=0)
-    if known.any():
-        low[known], high[known] = _interval(curves[:, known])
+    low = np.where(known, curves[0], np.nan)
+    high = low.copy()
+    given = curves[:, known]
+    if given.size and np.ptp(given, axis=0).max() > 0:
+        found = stats.bootstrap(
+            (given,),
+            np.mean,
+            axis=0,
+            n_resamples=_RESAMPLES,
+            batch=_BATCH,
+            method="percentile",
+            rng=np.random.default_rng(0),
+        ).confidence_interval
+        low[known], high[known] = found.low, found.high
     return low, high
-
-
-def _interval(curves: Floats) -> tuple[Floats, Floats]:
-    if np.ptp(curves, axis=0).max() == 0:
-        return curves[0], curves[0]
-    found = stats.bootstrap(
-        (curves,),
-        np.mean,
-        axis=0,
-        n_resamples=_RESAMPLES,
-        batch=_BATCH,
-        method="percentile",
-        rng=np.random.default_rng(0),
-    )
-    return found.confidence_interval.low, found.confidence_interval.high

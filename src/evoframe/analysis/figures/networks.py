@@ -71,8 +71,11 @@ def network(
     labels = {**dict(sorted(drawn.labels.items())), **dict(zip(graph.inputs, input_names, strict=True))}
     wrapped = {node: _wrapped(label) for node, label in labels.items()}
     sheet = _sheet(layout, wrapped, output_names)
-    legend = _legend(drawn.links)
-    figure, axes = _figure(sheet, textwrap.wrap(title, int(13 * sheet.width)), _note(graph, drawn), legend)
+    hidden, shown = (len(set(g.labels) - {*g.inputs, *g.outputs}) for g in (graph, drawn))
+    rest = "has no effect and is" if hidden - shown == 1 else "have no effect and are"
+    note = f"{hidden - shown} of {hidden} hidden nodes {rest} left out" if hidden > shown else ""
+    title_lines = textwrap.wrap(title, int(13 * sheet.width))
+    figure, axes = _figure(sheet, title_lines, note, _legend(drawn.links))
     drawing = _Drawing(axes, sheet, drawn, layout, wrapped)
     drawing.nodes()
     drawing.links()
@@ -261,14 +264,6 @@ def _figure(sheet: _Sheet, title: Sequence[str], note: str, legend: Sequence[Lin
     if legend:
         figure.legend(handles=legend, loc="lower center", ncols=n_columns, frameon=False, fontsize=7)
     return figure, axes
-
-
-def _note(graph: NetworkGraph, drawn: NetworkGraph) -> str:
-    hidden, shown = (len(set(g.labels) - {*g.inputs, *g.outputs}) for g in (graph, drawn))
-    if hidden == shown:
-        return ""
-    rest = "has no effect and is" if hidden - shown == 1 else "have no effect and are"
-    return f"{hidden - shown} of {hidden} hidden nodes {rest} left out"
 
 
 def _legend(links: Iterable[NetworkLink]) -> list[Line2D]:

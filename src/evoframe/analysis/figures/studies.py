@@ -19,10 +19,10 @@ from evoframe.analysis.data.units import NAMES, axis_title, factor_of
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, broken, row_height, text_width
+from evoframe.analysis.output.texts import counted
 from evoframe.analysis.statistics.groups import FEWEST, Comparison
-from evoframe.analysis.statistics.words import counted
 
-__all__ = ["curves", "curves_of", "finals", "lines", "ranks"]
+__all__ = ["curves", "curves_of", "draw_lines", "finals", "ranks"]
 
 _TITLE, _SIZE = 9, 7  # points: of titles, and of names
 _INSIDE = COLUMN - 0.2  # inches: what a figure has room for beside its margins
@@ -51,11 +51,11 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
 
 def curves_of(drawn: Sequence[Line], view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     """Return :func:`curves` from the lines of the view, whose bands take a while."""
-    return lines(drawn, axis_title(NAMES[yardstick], unit), view.title, f"{view.key}: runs")
+    return draw_lines(drawn, axis_title(NAMES[yardstick], unit), view.title, f"{view.key}: runs")
 
 
 @plain
-def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = None) -> Figure:
+def draw_lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = None) -> Figure:
     """Return lines over generations.
 
     Args:
@@ -70,9 +70,9 @@ def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = No
     if not drawn:
         raise ValueError("there are no lines to be drawn")
     names = [broken(line.name, _INSIDE - _HANDLE, _SIZE) for line in drawn]
-    n_columns = _columns(names)
+    n_columns, n_lines = _legend_shape(names)
     below = broken(legend or "", _INSIDE, _SIZE)
-    figure, axes = _figure(title, 2.6 + _LINE * (_lines(names, n_columns) + below.count("\n") + 1))
+    figure, axes = _figure(title, 2.6 + _LINE * (n_lines + below.count("\n") + 1))
     for line, name in zip(drawn, names, strict=True):
         style: dict[str, Any] = {
             "color": COLOURS[line.colour % len(COLOURS)],
@@ -96,27 +96,15 @@ def lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = No
     return figure
 
 
-def _columns(names: Sequence[str]) -> int:
-    """Return how many columns a legend has room for."""
-    fitting = (n for n in range(min(_MOST, len(names)), 1, -1) if _legend_width(names, n) <= _INSIDE)
-    return next(fitting, 1)
-
-
-def _legend_width(names: Sequence[str], n_columns: int) -> float:
-    columns = _in_columns(names, n_columns)
-    widths = [_HANDLE + max(text_width(name, _SIZE) for name in column) for column in columns]
-    return sum(widths) + _APART * (n_columns - 1)
-
-
-def _lines(names: Sequence[str], n_columns: int) -> int:
-    """Return how many lines the longest column of a legend has."""
-    columns = _in_columns(names, n_columns)
-    return max(sum(name.count("\n") + 1 for name in column) for column in columns)
-
-
-def _in_columns(names: Sequence[str], n_columns: int) -> list[Sequence[str]]:
-    """Return names as matplotlib puts them into a legend: the first columns have one more."""
-    return [part.tolist() for part in np.array_split(np.array(names, dtype=object), n_columns)]
+def _legend_shape(names: Sequence[str]) -> tuple[int, int]:
+    """Return how many columns a legend has room for, and how many lines the longest of them has."""
+    for n_columns in range(min(_MOST, len(names)), 0, -1):
+        # As matplotlib puts names into a legend: the first columns have one more.
+        columns = [part.tolist() for part in np.array_split(np.array(names, dtype=object), n_columns)]
+        widths = [_HANDLE + max(text_width(name, _SIZE) for name in column) for column in columns]
+        if n_columns == 1 or sum(widths) + _APART * (n_columns - 1) <= _INSIDE:
+            break
+    return n_columns, max(sum(name.count("\n") + 1 for name in column) for column in columns)
 
 
 @plain
@@ -147,9 +135,26 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
         colour = COLOURS[place % len(COLOURS)]
         axes.plot(scaled, beside, "o", color=colour, ms=3, mew=0, alpha=0.6)
         if boxed:
-            _box(axes, place + 0.18, scaled)
-    if comparison is not None:
-        _letter(axes, comparison, list(groups))
+            axes.boxplot(
+                [scaled],
+                positions=[place + 0.18],
+                widths=0.28,
+                orientation="horizontal",
+                showfliers=False,
+                medianprops={"color": "black", "lw": 1.5},
+            )
+    letters = {} if comparison is None else comparison.letters
+    for place, name in enumerate(groups):
+        axes.annotate(
+            letters.get(name, ""),
+            (1.0, place),
+            xytext=(3, 0),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            ha="left",
+            va="center",
+            size=8,
+        )
     axes.locator_params(axis="x", nbins=6)  # more would nearly touch beside long names
     axes.set_yticks(range(len(groups)), labels)
     axes.set_ylim(len(groups) - 0.5, -0.5)  # the first on top
@@ -223,28 +228,3 @@ def _figure(title: str, height: float) -> tuple[Figure, Axes]:
     for text in (axes.xaxis.label, axes.yaxis.label):
         text.set_fontsize(8)
     return figure, axes
-
-
-def _box(axes: Axes, place: float, values: NDArray[np.float64]) -> None:
-    axes.boxplot(
-        [values],
-        positions=[place],
-        widths=0.28,
-        orientation="horizontal",
-        showfliers=False,
-        medianprops={"color": "black", "lw": 1.5},
-    )
-
-
-def _letter(axes: Axes, comparison: Comparison, names: Sequence[str]) -> None:
-    for place, name in enumerate(names):
-        axes.annotate(
-            comparison.letters[name],
-            (1.0, place),
-            xytext=(3, 0),
-            xycoords=("axes fraction", "data"),
-            textcoords="offset points",
-            ha="left",
-            va="center",
-            size=8,
-        )

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from evoframe.analysis.output.writing import write_bytes
+from evoframe.analysis.output.writing import write_files
 from evoframe.errors import InputError, RunError
 from evoframe.files.reading import LARGEST_DOCUMENT, is_file, read_text
 
@@ -28,12 +28,14 @@ def listed(directory: Path) -> dict[str, str]:
     if not is_file(path):
         return {}
     try:
-        files = json.loads(read_text(path, LARGEST_DOCUMENT))["files"]
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise _no_list(path) from error
-    if not isinstance(files, dict) or not all(map(_is_name, files)):
-        raise _no_list(path)
-    return {name: str(digest) for name, digest in files.items()}
+        files = json.loads(read_text(path, LARGEST_DOCUMENT))["files"].items()
+        if not all(re.fullmatch(r"[^/\0]+", name) and name not in {".", ".."} for name, _ in files):
+            raise ValueError("a file of another directory")  # noqa: TRY301 - as all others
+    except (AttributeError, ValueError, TypeError, KeyError, RecursionError) as error:
+        raise InputError(
+            f"{path}: is no list of a report's files; remove it, or choose another place with --out"
+        ) from error
+    return {name: str(digest) for name, digest in files}
 
 
 def settle(directory: Path, before: Mapping[str, str], files: Iterable[Path]) -> Path:
@@ -58,18 +60,8 @@ def settle(directory: Path, before: Mapping[str, str], files: Iterable[Path]) ->
         if name.casefold() not in kept:
             _remove(directory / name, digest)
     text = json.dumps({"files": dict(sorted(now.items()))}, indent=1)
-    return write_bytes(f"{text}\n".encode(), directory / LIST_FILE)
-
-
-def _is_name(name: str) -> bool:
-    """Return whether it can be a file of the directory itself."""
-    return re.fullmatch(r"[^/\0]+", name) is not None and name not in {".", ".."}
-
-
-def _no_list(path: Path) -> InputError:
-    return InputError(
-        f"{path}: is no list of a report's files; remove it, or choose another place with --out"
-    )
+    [path] = write_files({LIST_FILE: f"{text}\n".encode()}, directory)
+    return path
 
 
 def _remove(path: Path, digest: str) -> None:

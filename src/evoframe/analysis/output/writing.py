@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import attrs
 import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
@@ -16,15 +15,7 @@ from matplotlib.figure import Figure
 from evoframe.errors import InputError
 from evoframe.files.writing import write_atomically
 
-__all__ = [
-    "Rendered",
-    "Written",
-    "prepare_directory",
-    "rendered",
-    "write_bytes",
-    "write_figure",
-    "write_table",
-]
+__all__ = ["figure_files", "prepare_directory", "table_files", "write_files"]
 
 _FORMATS: dict[str, dict[str, Any]] = {
     "pdf": {"metadata": {"CreationDate": None, "Creator": None, "Producer": None}},
@@ -33,45 +24,6 @@ _FORMATS: dict[str, dict[str, Any]] = {
 }
 
 _SIGNS = str.maketrans({"<": r"\textless{}", ">": r"\textgreater{}"})  # others in LaTeX's usual fonts
-
-
-@attrs.frozen
-class Written:
-    """A report.
-
-    Attributes:
-        words: What it says.
-        files: What was written.
-    """
-
-    words: str
-    files: tuple[Path, ...]
-
-
-@attrs.frozen
-class Rendered:
-    """A figure as the files that it becomes.
-
-    Attributes:
-        name: What they are called, without an ending.
-        files: Ending -> bytes.
-    """
-
-    name: str
-    files: Mapping[str, bytes] = attrs.field(repr=False)
-
-    @property
-    def svg(self) -> bytes:
-        """What stands in a page."""
-        return self.files["svg"]
-
-    def write(self, directory: Path) -> list[Path]:
-        """Write the files, and return their paths.
-
-        Raises:
-            RunError: They cannot be written.
-        """
-        return [write_bytes(data, directory / f"{self.name}.{ending}") for ending, data in self.files.items()]
 
 
 def prepare_directory(directory: Path) -> Path:
@@ -89,68 +41,48 @@ def prepare_directory(directory: Path) -> Path:
     return directory
 
 
-def write_figure(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure as PDF, SVG and PNG.
+def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
+    """Return a figure as PDF, SVG and PNG, with the same layout in each: name of a file -> its bytes.
 
     Args:
         figure: What is drawn.
-        path: Where to, without an ending.
-
-    Returns:
-        What was written.
-
-    Raises:
-        RunError: It cannot be written.
-    """
-    return rendered(figure, path.name).write(path.parent)
-
-
-def rendered(figure: Figure, name: str) -> Rendered:
-    """Return a figure in all formats; it has the same layout in each.
-
-    Args:
-        figure: What is drawn.
-        name: What its files are called, without an ending. It makes the ids in an SVG file its own.
+        name: Name of the files, without an ending. It makes the ids in an SVG file its own.
     """
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # else it is arranged anew for each format, and slightly otherwise
-    return Rendered(name, {ending: _bytes_of(figure, ending, name) for ending in _FORMATS})
+    files = {}
+    for ending, options in _FORMATS.items():
+        data = io.BytesIO()
+        with mpl.rc_context({"svg.hashsalt": name, "pdf.fonttype": 42, "svg.fonttype": "none"}):
+            figure.savefig(data, format=ending, **options)
+        files[f"{name}.{ending}"] = data.getvalue()
+    return files
 
 
-def write_table(table: pd.DataFrame, path: Path) -> list[Path]:
-    """Write a table as CSV, and as LaTeX (package booktabs) with four digits.
+def table_files(table: pd.DataFrame, name: str) -> dict[str, bytes]:
+    """Return a table as CSV, and as LaTeX (package booktabs) with four digits: name of a file -> its bytes.
 
     Args:
-        table: What is written.
-        path: Where to, without an ending.
-
-    Returns:
-        What was written.
-
-    Raises:
-        RunError: It cannot be written.
+        table: The table.
+        name: Name of the files, without an ending.
     """
-    texts = {
-        "csv": table.to_csv(index=False),
-        "tex": table.to_latex(index=False, na_rep="-", float_format="%.4g", escape=True).translate(_SIGNS),
+    latex = table.to_latex(index=False, na_rep="-", float_format="%.4g", escape=True)
+    return {
+        f"{name}.csv": table.to_csv(index=False).encode(),
+        f"{name}.tex": latex.translate(_SIGNS).encode(),
     }
-    return [
-        write_bytes(text.encode(), path.with_name(f"{path.name}.{ending}")) for ending, text in texts.items()
-    ]
 
 
-def write_bytes(data: bytes, path: Path) -> Path:
-    """Write a file, and return its path.
+def write_files(files: Mapping[str, bytes], directory: Path) -> list[Path]:
+    """Write files into a directory, each atomically, and return their paths.
+
+    Args:
+        files: Name -> bytes.
+        directory: Where to; it is there.
 
     Raises:
-        RunError: It cannot be written.
+        RunError: One of them cannot be written.
     """
-    write_atomically(path, data)
-    return path
-
-
-def _bytes_of(figure: Figure, ending: str, name: str) -> bytes:
-    data = io.BytesIO()
-    with mpl.rc_context({"svg.hashsalt": name, "pdf.fonttype": 42, "svg.fonttype": "none"}):
-        figure.savefig(data, format=ending, **_FORMATS[ending])
-    return data.getvalue()
+    for name, data in files.items():
+        write_atomically(directory / name, data)
+    return [directory / name for name in files]

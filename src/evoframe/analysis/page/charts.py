@@ -21,6 +21,7 @@ __all__ = ["finals_chart", "lines_chart"]
 
 _FEW = 10  # generations
 _LINE = 22  # characters of a name
+_BOX = {"q1": "q1", "median": "med", "q3": "q3", "lowerfence": "whislo", "upperfence": "whishi"}
 _DASHES = ("solid", "dash", "dot", "dashdot")
 
 
@@ -80,24 +81,18 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     traces = []
     for number, (name, values) in enumerate(view.values(yardstick).items()):
         scaled, called = np.array(values) * factor_of(unit), _name(f"{name}: {len(values)}")
-        trace = _box(scaled, called) if len(values) >= FEWEST else _points(scaled, called)
+        if len(values) < FEWEST:
+            points = {"mode": "markers", "marker_size": 6}
+            trace = Scatter(x=[called] * len(values), y=_told(scaled), name=called, **points)
+        else:
+            [box] = boxplot_stats(scaled)  # that of figures: plotly reckons quartiles otherwise
+            own = {key: _told(np.array([box[other]])) for key, other in _BOX.items()}
+            points = {"boxpoints": "all", "jitter": 0.5, "pointpos": -1.6, "marker_size": 4}
+            trace = Box(x=[called], y=[_told(scaled)], name=called, **points, **own)
         traces.append(trace.update(meta={"colour": number}))
     plot = _arranged(Figure(traces), f"{view.key}: runs", axis_title(NAMES[yardstick], unit))
     plot.update_xaxes(range=[-0.7, len(traces) - 0.5])  # points would lie at the edges
     return plot.update_layout(showlegend=False, hovermode="closest")
-
-
-def _box(values: NDArray[np.float64], name: str) -> Box:
-    """Return the box that figures have, for plotly reckons quartiles otherwise."""
-    [box] = boxplot_stats(values)
-    shown = {"q1": "q1", "median": "med", "q3": "q3", "lowerfence": "whislo", "upperfence": "whishi"}
-    own = {key: _told(np.array([box[other]])) for key, other in shown.items()}
-    points = {"boxpoints": "all", "jitter": 0.5, "pointpos": -1.6, "marker_size": 4}
-    return Box(x=[name], y=[_told(values)], name=name, **points, **own)
-
-
-def _points(values: NDArray[np.float64], name: str) -> Scatter:
-    return Scatter(x=[name] * len(values), y=_told(values), name=name, mode="markers", marker_size=6)
 
 
 def _arranged(plot: Figure, x: str, y: str) -> Figure:

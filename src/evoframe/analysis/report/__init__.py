@@ -1,1 +1,5 @@
-"""Reports of runs and studies: figures, tables, conclusions and the page."""
+"""Reports of runs and studies: figures, tables, conclusions and the page, as files (:func:`report`)."""
+
+from evoframe.analysis.report.api import Report, report
+
+__all__ = ["Report", "report"]

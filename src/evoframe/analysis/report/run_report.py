@@ -1,8 +1,6 @@
-"""The report of a run: figures, tables, and a page."""
+"""The report of a run: figures, tables, and sections of the page."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import pandas as pd
 
@@ -10,72 +8,70 @@ from evoframe.analysis.data.champions import ChampionData, load_champion
 from evoframe.analysis.data.tables import versions_table
 from evoframe.analysis.data.units import axis_title, with_unit
 from evoframe.analysis.figures.lines import lines_of_run
-from evoframe.analysis.figures.studies import lines
-from evoframe.analysis.output.writing import (
-    Written,
-    prepare_directory,
-    write_bytes,
-    write_figure,
-    write_table,
-)
+from evoframe.analysis.figures.studies import draw_lines
+from evoframe.analysis.output.writing import figure_files, table_files
 from evoframe.analysis.page.charts import lines_chart
-from evoframe.analysis.page.page import Chart, Section, Source, Table, page
-from evoframe.analysis.report.champion_report import DrawnChampion, champion_sections, drawn, write_champion
-from evoframe.analysis.robustness import robustness_part
+from evoframe.analysis.page.html import Block, Chart, Section, Source, Table
+from evoframe.analysis.report.champion_report import champion_part
+from evoframe.analysis.report.draft import Draft
+from evoframe.analysis.robustness.section import robustness_part
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.files.reading import LARGEST_DOCUMENT, read_text, shown_name
 from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.run import Run, load_run
+from evoframe.record.run import Run
 from evoframe.registry.registry import Plugins
 
-__all__ = ["write_run_report"]
+__all__ = ["draft_of_run"]
 
 _CAPTION = "The score of the best pair so far, and the fitness of each population, in each generation."
 
 
-def write_run_report(
-    directory: Path, target: Path, plugins: Plugins, correction: Correction = "holm"
-) -> Written:
-    """Write the report of a run.
+def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") -> Draft:
+    """Return the report of a run.
 
     Args:
-        directory: The run, finished or not.
-        target: Where to.
+        run: The run, finished or not.
         plugins: The plugins that its configuration names.
-        correction: Of the p-values of pairs of bodies, if its robustness was measured.
+        correction: Correction of the p-values of pairs of bodies, if its robustness was measured.
 
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
-        InputError: It is no run's directory, has no champion yet, or is damaged; or *target* cannot be made.
-        RunError: The report cannot be written.
+        InputError: It has no champion yet, or is damaged.
+        ComponentError: Its simulator or an evolver fails, or returns something that cannot be drawn.
     """
-    run, champion = load_run(directory), load_champion(directory, plugins)
+    champion = load_champion(run, plugins)
+    title, lead = shown_name(run.directory), _lead(run, champion)
     curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
-    title, lead, with_figures = shown_name(directory), _lead(run, champion), drawn(champion)
-    robustness = robustness_part(directory, plugins, correction)
-    prepare_directory(target)
-    written = write_figure(lines(curves, label, title), target / "curves")
-    written += write_champion(with_figures, target)
     summary = _summary(run, champion)
-    written += write_table(summary, target / "summary")
-    written += robustness.write(target)
-    progress = Section(
-        "Progress", [Chart(_CAPTION, lines_chart(curves, label)), Table("The final figures.", summary)]
-    )
-    champion_first, *others = _sections(run, with_figures, progress)
-    data = page(title, lead, [champion_first, *robustness.sections, *others])
-    written.append(write_bytes(data, target / "report.html"))
-    return Written(f"{title}: {lead}\n", tuple(written))
-
-
-def _sections(run: Run, champion: DrawnChampion, progress: Section) -> list[Section]:
-    text = read_text(run.directory / CONFIG_FILE, LARGEST_DOCUMENT)
-    made_by = versions_table(run.config.get("provenance", {}))
-    return [
-        *champion_sections(champion, "the best pair that was simulated"),
-        progress,
-        Section("Configuration", [Source(CONFIG_FILE, text), Table("What made it.", made_by)]),
+    shown = champion_part(champion, "the best pair that was simulated")
+    robustness = robustness_part(run.directory, plugins, correction)
+    first, *others = shown.sections
+    progress: list[Block] = [
+        Chart(_CAPTION, lines_chart(curves, label)),
+        Table("The final figures.", summary),
     ]
+    configuration: list[Block] = [
+        Source(CONFIG_FILE, read_text(run.directory / CONFIG_FILE, LARGEST_DOCUMENT)),
+        Table("What made it.", versions_table(run.config.get("provenance", {}))),
+    ]
+    return Draft(
+        title,
+        lead,
+        sections=[
+            first,
+            *robustness.sections,
+            *others,
+            Section("Progress", progress),
+            Section("Configuration", configuration),
+        ],
+        files={
+            **figure_files(draw_lines(curves, label, title), "curves"),
+            **shown.files,
+            **table_files(summary, "summary"),
+            **robustness.files,
+        },
+        words=f"{title}: {lead}\n",
+    )
 
 
 def _lead(run: Run, champion: ChampionData) -> str:

@@ -1,16 +1,18 @@
-"""What a measurement of robustness says: statistics, figure, words and files."""
+"""Findings of a measurement of robustness: statistics, tables, figure, words and files.
 
+:func:`find` compares the groups of a measurement; the others show what it found.
+"""
+
+from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.files import as_json, records, write_findings, write_robustness
 from evoframe.analysis.robustness.findings import Findings, find
-from evoframe.analysis.robustness.section import RobustnessPart, robustness_part
+from evoframe.analysis.robustness.section import robustness_part
 from evoframe.analysis.robustness.tables import groups_table
-from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.robustness.files import read_robustness
 
 __all__ = [
     "Findings",
-    "RobustnessPart",
     "as_json",
     "conclusions",
     "find",

@@ -8,10 +8,10 @@ from typing import Any
 
 import pandas as pd
 
-from evoframe.analysis.output.writing import prepare_directory, write_bytes, write_figure, write_table
+from evoframe.analysis.output.writing import figure_files, prepare_directory, table_files, write_files
+from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
-from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.robustness.files import document_of, write_measurement
 
@@ -45,10 +45,10 @@ def write_findings(found: Findings, directory: Path) -> list[Path]:
     Raises:
         RunError: It cannot be written.
     """
-    written = [write_bytes(conclusions(found).encode(), directory / "conclusions.txt")]
+    files = {"conclusions.txt": conclusions(found).encode()}
     for name, table in _all_tables(found).items():
-        written += write_table(table, directory / name)
-    return [*written, *write_figure(violins(found.measured), directory / "violins")]
+        files |= table_files(table, name)
+    return write_files(files | figure_files(violins(found.measured), "violins"), directory)
 
 
 def as_json(found: Findings) -> dict[str, Any]:

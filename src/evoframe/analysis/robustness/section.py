@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-import attrs
-
-from evoframe.analysis.output.writing import Rendered, rendered
-from evoframe.analysis.page.page import Block, Picture, Section, Words
+from evoframe.analysis.output.writing import figure_files
+from evoframe.analysis.page.html import Block, Part, Picture, Section, Words
+from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.findings import find
-from evoframe.analysis.robustness.violins import violins
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.files.reading import is_file, shown_name
 from evoframe.registry.registry import Plugins
-from evoframe.robustness.api import Measurable, measurable
+from evoframe.robustness.api import measurable
 from evoframe.robustness.files import SETTING_FILE, read_robustness
-from evoframe.robustness.measurement import Robustness
 
-__all__ = ["RobustnessPart", "robustness_part"]
+__all__ = ["robustness_part"]
 
 _STALE = "The measurement that is there is of other champions"
 _CAPTION = "All bodies with the same random controllers (evoframe robustness)."
@@ -29,33 +25,7 @@ _OTHERWISE = (
 )
 
 
-@attrs.frozen(eq=False)
-class RobustnessPart:
-    """What a report has of a measurement; nothing if there is none.
-
-    Attributes:
-        blocks: What the page shows.
-        figure: The violins, as files.
-    """
-
-    blocks: Sequence[Block] = ()
-    figure: Rendered | None = None
-
-    @property
-    def sections(self) -> list[Section]:
-        """Its section of the page, if it has one."""
-        return [Section("Robustness", self.blocks)] if self.blocks else []
-
-    def write(self, target: Path) -> list[Path]:
-        """Write the figure, if there is one, and return what was written.
-
-        Raises:
-            RunError: It cannot be written.
-        """
-        return [] if self.figure is None else self.figure.write(target)
-
-
-def robustness_part(directory: Path, plugins: Plugins, correction: Correction = "holm") -> RobustnessPart:
+def robustness_part(directory: Path, plugins: Plugins, correction: Correction = "holm") -> Part:
     """Return what a report has of the measurement in a run's or a study's directory.
 
     Args:
@@ -69,21 +39,15 @@ def robustness_part(directory: Path, plugins: Plugins, correction: Correction = 
     """
     place = directory / "robustness"
     if not is_file(place / SETTING_FILE):
-        return RobustnessPart()
+        return Part()
     measured = read_robustness(place)
     champions = list(measurable(directory, plugins))
     if not {body.digest for body in measured.setting.bodies} >= {each.digest for each in champions}:
         again = f"evoframe robustness {shown_name(directory)} --force"
-        return RobustnessPart([Words(f"{_STALE}; to measure again: {again}")])
-    figure = rendered(violins(measured), "violins")
-    return RobustnessPart([*_blocks(measured, champions, figure, correction)], figure)
-
-
-def _blocks(
-    measured: Robustness, champions: Sequence[Measurable], figure: Rendered, correction: Correction
-) -> Iterator[Block]:
-    yield Picture(_CAPTION, figure.svg)
+        return Part([Section("Robustness", [Words(f"{_STALE}; to measure again: {again}")])])
+    files = figure_files(violins(measured), "violins")
+    blocks: list[Block] = [Picture(_CAPTION, files["violins.svg"])]
     if any(each.simulation != measured.setting.simulation for each in champions):
-        yield Words(_OTHERWISE)
-    for line in filter(None, conclusions(find(measured, correction)).splitlines()):
-        yield Words(line)
+        blocks.append(Words(_OTHERWISE))
+    blocks += map(Words, filter(None, conclusions(find(measured, correction)).splitlines()))
+    return Part([Section("Robustness", blocks)], files)

@@ -102,7 +102,12 @@ def compare_blocks(values: Mapping[str, Sequence[float]], correction: Correction
     Sources: Friedman 1937; Wilcoxon 1945, where zeros are ranked and then dropped (Pratt 1959), exact for at
     most 50 blocks without ties; Kendall and Smith 1939.
     """
-    table = _table(values)
+    lengths = {len(given) for given in values.values()}
+    if len(values) < 2 or len(lengths) != 1 or lengths == {0}:
+        raise ValueError(f"expected as many values for each of 2 or more groups, found {sorted(lengths)}")
+    table = np.array(list(values.values()), dtype=np.float64).T
+    if not np.isfinite(table).all():
+        raise ValueError("expected finite numbers")
     ranks = stats.rankdata(table, axis=1).mean(axis=0)
     order = sorted(range(table.shape[1]), key=lambda i: (-ranks[i], list(values)[i]))
     names = [list(values)[i] for i in order]
@@ -124,16 +129,6 @@ def compare_blocks(values: Mapping[str, Sequence[float]], correction: Correction
             for (i, j), p_of_pair in zip(pairs, corrected, strict=True)
         ),
     )
-
-
-def _table(values: Mapping[str, Sequence[float]]) -> Floats:
-    lengths = {len(given) for given in values.values()}
-    if len(values) < 2 or len(lengths) != 1 or lengths == {0}:
-        raise ValueError(f"expected as many values for each of 2 or more groups, found {sorted(lengths)}")
-    table = np.array(list(values.values()), dtype=np.float64).T
-    if not np.isfinite(table).all():
-        raise ValueError("expected finite numbers")
-    return table
 
 
 def _friedman(table: Floats) -> tuple[float, float]:

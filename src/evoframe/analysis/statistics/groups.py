@@ -147,7 +147,11 @@ def compare(
     Tomczak 2014; letters after Piepho 2004.
     """
     arrays = {name: np.asarray(given, dtype=np.float64) for name, given in values.items()}
-    _refuse(arrays)
+    if len(arrays) < 2:
+        raise ValueError(f"a comparison needs at least 2 groups, found {len(arrays)}")
+    for name, array in arrays.items():
+        if array.ndim != 1 or len(array) == 0 or not np.isfinite(array).all():
+            raise ValueError(f"{name}: expected one or more finite numbers")
     groups = ranked(values)
     ranks = {group.name: group.mean_rank for group in groups}
     ordered = {name: arrays[name] for name in ranks}
@@ -184,8 +188,22 @@ def ranked(values: Mapping[str, Sequence[float]]) -> tuple[Group, ...]:
         values: Name -> values, at least one for each group.
     """
     arrays = {name: np.asarray(given, dtype=np.float64) for name, given in values.items()}
-    ranks = _mean_ranks(list(arrays.values()))
-    groups = [_group(name, array, rank) for (name, array), rank in zip(arrays.items(), ranks, strict=True)]
+    ends = np.cumsum([len(array) for array in arrays.values()])
+    ranks = np.split(stats.rankdata(np.concatenate([*arrays.values()])), ends[:-1])
+    groups = []
+    for (name, array), ranks_of_group in zip(arrays.items(), ranks, strict=True):
+        low, middle, high = map(float, np.quantile(array, [0.25, 0.5, 0.75]))
+        group = Group(
+            name=name,
+            n=len(array),
+            mean=math.fsum(array) / len(array),
+            sd=float(np.std(array, ddof=1)) if len(array) > 1 else None,
+            median=middle,
+            quartiles=(low, high),
+            mean_rank=float(ranks_of_group.mean()),
+            shapiro_p=_shapiro(array),
+        )
+        groups.append(group)
     return tuple(sorted(groups, key=lambda group: (-group.mean_rank, group.name)))
 
 
@@ -211,28 +229,6 @@ def detectable_a12(n: int, comparisons: int, alpha: float = 0.05, power: float =
     """
     quantiles = stats.norm.isf(alpha / comparisons / 2) + stats.norm.isf(1 - power)
     return min(1.0, 0.5 + float(quantiles) / math.sqrt(6 * n))
-
-
-def _refuse(arrays: Mapping[str, Floats]) -> None:
-    if len(arrays) < 2:
-        raise ValueError(f"a comparison needs at least 2 groups, found {len(arrays)}")
-    for name, array in arrays.items():
-        if array.ndim != 1 or len(array) == 0 or not np.isfinite(array).all():
-            raise ValueError(f"{name}: expected one or more finite numbers")
-
-
-def _mean_ranks(arrays: Sequence[Floats]) -> list[float]:
-    ranks = stats.rankdata(np.concatenate(arrays))
-    ends = np.cumsum([len(array) for array in arrays])
-    return [float(part.mean()) for part in np.split(ranks, ends[:-1])]
-
-
-def _group(name: str, array: Floats, mean_rank: float) -> Group:
-    low, middle, high = np.quantile(array, [0.25, 0.5, 0.75])
-    sd = float(np.std(array, ddof=1)) if len(array) > 1 else None
-    mean = math.fsum(array) / len(array)
-    quartiles = float(low), float(high)
-    return Group(name, len(array), mean, sd, float(middle), quartiles, mean_rank, _shapiro(array))
 
 
 def _shapiro(array: Floats) -> float | None:

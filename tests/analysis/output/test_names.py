@@ -6,7 +6,7 @@ import re
 
 from hypothesis import given, strategies as st
 
-from evoframe.analysis.output.slugs import slugs
+from evoframe.analysis.output.names import slugs
 
 
 @given(st.lists(st.text(max_size=8) | st.text("ab-.", min_size=50), unique=True, max_size=8))

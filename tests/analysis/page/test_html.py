@@ -17,7 +17,7 @@ from hypothesis import given, settings, strategies as st
 from plotly.graph_objects import Figure, Scatter
 
 from evoframe import Geometry, GeometryPart
-from evoframe.analysis.page.page import (
+from evoframe.analysis.page.html import (
     Block,
     Cell,
     Chart,
@@ -84,7 +84,7 @@ def test_cells_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
         made.append(value)
         return Cell(str(value), is_number=True)
 
-    monkeypatch.setattr("evoframe.analysis.page.page._cell", note)
+    monkeypatch.setattr("evoframe.analysis.page.html._cell", note)
     page("t", "l", [Section("One", [Table("", pd.DataFrame({"a": [1, 2], "b": [3, 4], "c": [5, 6]}))])])
     assert sorted(made) == [1, 2, 3, 4, 5, 6]
 

@@ -21,10 +21,22 @@ from plotly.graph_objects import Figure as Plot
 from plotly.offline import get_plotlyjs
 
 from evoframe._version import __version__
-from evoframe.analysis.output.slugs import slugs
+from evoframe.analysis.output.names import slugs
 from evoframe.contract.drawings import Geometry
 
-__all__ = ["Block", "Chart", "Motion", "Picture", "Section", "Source", "Table", "Words", "page"]
+__all__ = [
+    "Block",
+    "Cell",
+    "Chart",
+    "Motion",
+    "Part",
+    "Picture",
+    "Section",
+    "Source",
+    "Table",
+    "Words",
+    "page",
+]
 
 _QUANTA = 32767  # displacements are told as 16-bit numbers
 _NOTICEABLE = 0.15  # of the body's extent: how far the exaggeration moves it at first
@@ -145,6 +157,19 @@ class Section:
     blocks: Sequence[Block]
 
 
+@attrs.frozen(eq=False)
+class Part:
+    """What a report has of one thing.
+
+    Attributes:
+        sections: Of the page.
+        files: Name -> bytes, beside the page.
+    """
+
+    sections: Sequence[Section] = ()
+    files: Mapping[str, bytes] = attrs.field(factory=dict, repr=False)
+
+
 def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
     """Return a page as the bytes of an HTML file.
 
@@ -153,51 +178,36 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
         lead: A sentence below it.
         sections: What it shows; empty tables, and sections without anything else, are left out.
     """
-    full = [attrs.evolve(section, blocks=[*filter(_has_content, section.blocks)]) for section in sections]
+    full = [
+        Section(section.title, [b for b in section.blocks if not isinstance(b, Table) or len(b.frame)])
+        for section in sections
+    ]
     shown = [section for section in full if section.blocks]
     anchors = slugs(section.title.lower() for section in shown)
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    template = environment.from_string(_file("page.html"))
     scripts = [get_plotlyjs(), _file("page.js")]
-    text = _template().render(
+    digests = [hashlib.sha256(script.encode()).digest() for script in scripts]
+    text = template.render(
         title=title,
         lead=lead,
         sections=list(zip(anchors, shown, strict=True)),
         version=__version__,
         style=_file("page.css"),
         scripts=scripts,
-        hashes=[*map(_hash, scripts)],
+        hashes=[f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests],  # no other may run
     )
     return text.encode()
-
-
-def _has_content(block: Block) -> bool:
-    return not isinstance(block, Table) or len(block.frame) > 0
-
-
-@functools.cache
-def _template() -> jinja2.Template:
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    return environment.from_string(_file("page.html"))
 
 
 def _file(name: str) -> str:
     return (resources.files("evoframe.analysis.page") / "templates" / name).read_text(encoding="utf-8")
 
 
-def _hash(script: str) -> str:
-    """Return how a page's content security policy names a script that may run: no other may."""
-    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
-
-
 def _in_script(document: Mapping[str, Any]) -> str:
     """Return JSON that may stand in an element ``script``: nothing in it ends the element."""
-    text = json.dumps(document, default=_listed, allow_nan=False, separators=(",", ":"))
+    text = json.dumps(document, default=lambda array: array.tolist(), allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
-
-
-def _listed(value: Any) -> Any:
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    raise TypeError(f"{type(value)} cannot stand in a page")
 
 
 def _cell(value: Any) -> Cell:
@@ -217,6 +227,10 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
         moves, largest = [np.zeros_like(moved) for moved in moves], 0.0
     exaggeration = _round(_NOTICEABLE * extent / largest) if largest else 1
     step = largest / _QUANTA or 1.0
+    # For each axis where the body is at rest, and how far it moves down and up from there.
+    rest = np.concatenate([part.vertices[0] for part in geometry.parts])
+    moved = np.concatenate([(part.vertices - part.vertices[0]).reshape(-1, 3) for part in geometry.parts])
+    bounds = np.stack([rest.min(axis=0), rest.max(axis=0), moved.min(axis=0), moved.max(axis=0)], axis=1)
     return {
         "times": geometry.times,
         "step": step,
@@ -231,7 +245,7 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
             }
             for part, moved in zip(geometry.parts, moves, strict=True)
         ],
-        "bounds": _bounds([part.vertices for part in geometry.parts]),
+        "bounds": bounds,
         "track": None if points is None else {"name": escape(str(track), quote=False), "positions": points},
         "exaggeration": exaggeration,
         "most": max(10, int(_MOST * exaggeration)),
@@ -244,14 +258,6 @@ def _round(value: float) -> int:
         return 1
     power = 10 ** math.floor(math.log10(value))
     return int(max(factor * power for factor in (1, 2, 5) if factor * power <= value))
-
-
-def _bounds(vertices: Sequence[NDArray[np.float64]]) -> list[list[float]]:
-    """Return for each axis where the body is at rest, and how far it moves down and up from there."""
-    rest = np.concatenate([given[0] for given in vertices])
-    moved = np.concatenate([(given - given[0]).reshape(-1, 3) for given in vertices])
-    columns = [rest.min(axis=0), rest.max(axis=0), moved.min(axis=0), moved.max(axis=0)]
-    return np.stack(columns, axis=1).tolist()  # type: ignore[no-any-return]
 
 
 def _base64(array: NDArray[Any]) -> str:

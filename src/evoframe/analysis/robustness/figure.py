@@ -50,7 +50,12 @@ def violins(measured: Robustness) -> Figure:
     axes.set_yticks(range(len(groups)), labels, size=_SIZE)
     axes.set_ylim(len(groups) - 0.4, -0.6)  # the first on top
     axes.axvline(0.0, color="0.6", lw=0.6, zorder=0)
-    _dress(axes, measured.setting.unit)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    axes.tick_params(axis="x", labelsize=7)
+    axes.locator_params(axis="x", nbins=6)  # more would nearly touch
+    unit = measured.setting.unit
+    axes.set_xlabel({"m": "displacement (mm)", "": "score"}.get(unit, f"score ({unit})"), size=8)
     bodies, controllers = len(measured.setting.bodies), measured.setting.controllers
     shared = f"\nthe same for all {bodies} bodies" if bodies > 1 else ""
     drawn = "1 random controller" if controllers == 1 else f"{controllers:,} random controllers"
@@ -59,33 +64,20 @@ def violins(measured: Robustness) -> Figure:
 
 
 def _violin(axes: Axes, place: int, values: NDArray[np.float64], colour: str) -> None:
+    """Draw density, extremes, quartiles and median of one group."""
     if not len(values):
         return
     low, first, middle, third, high = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0])
     if high - low > _NOISE * max(high, -low):
-        _density(axes, place, values, colour)
+        drawn = axes.violinplot(
+            [values], [place], orientation="horizontal", widths=_BREADTH, points=_GRID, showextrema=True
+        )
+        [body] = cast("list[PolyCollection]", drawn["bodies"])
+        body.set(facecolor=colour, alpha=0.45, lw=0)
+        for name in ("cbars", "cmins", "cmaxes"):
+            drawn[name].set(color=colour, lw=0.8)
     axes.plot([first, third], [place, place], lw=3.5, color=colour, solid_capstyle="butt")
     axes.plot(middle, place, "o", color="white", mec="black", mew=0.8, ms=4.5, zorder=4)
-
-
-def _density(axes: Axes, place: int, values: NDArray[np.float64], colour: str) -> None:
-    """Draw how values lie between their extremes, which are joined by a line."""
-    drawn = axes.violinplot(
-        [values], [place], orientation="horizontal", widths=_BREADTH, points=_GRID, showextrema=True
-    )
-    [body] = cast("list[PolyCollection]", drawn["bodies"])
-    body.set(facecolor=colour, alpha=0.45, lw=0)
-    for name in ("cbars", "cmins", "cmaxes"):
-        drawn[name].set(color=colour, lw=0.8)
-
-
-def _dress(axes: Axes, unit: str) -> None:
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.tick_params(axis="y", length=0)
-    axes.tick_params(axis="x", labelsize=7)
-    axes.locator_params(axis="x", nbins=6)  # more would nearly touch
-    shown = {"m": "displacement (mm)", "": "score"}.get(unit, f"score ({unit})")
-    axes.set_xlabel(shown, size=8)
 
 
 def _labels(measured: Robustness) -> list[str]:

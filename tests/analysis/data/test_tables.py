@@ -1,0 +1,87 @@
+"""Tables of a study have a line for each group, pair and ranking."""
+
+from __future__ import annotations
+
+import math
+
+import attrs
+import pytest
+
+from evoframe.analysis.data.studies import StudyData
+from evoframe.analysis.data.tables import (
+    comparisons,
+    pairs_table,
+    ranking_table,
+    summary_table,
+    versions_table,
+)
+from evoframe.study.rows import Row
+
+ROW = Row({}, 0, 1, "", "", 1.0, 1.0, 1.0, 1, 1, 1.0, "")
+
+
+def data(*averages: str, runs: int = 6) -> StudyData:
+    """Return a study in which each average is better than the one before it."""
+    rows = [
+        attrs.evolve(
+            ROW,
+            settings={"collaboration.n": n, "aggregator": average},
+            run=run,
+            score=place + run / 100,
+            fitness=place + run / 50,
+        )
+        for n in ("2", "3")
+        for place, average in enumerate(averages)
+        for run in range(runs)
+    ]
+    return StudyData("s", ("collaboration.n", "aggregator"), "m", len(rows), tuple(rows))
+
+
+def test_each_view_is_compared_on_both_yardsticks() -> None:
+    found = comparisons(data("am", "wm"), "none")
+    assert [(each.view.title, each.yardstick) for each in found] == [
+        (title, yardstick)
+        for yardstick in ("score", "fitness")
+        for title in ("n = 2", "n = 3", "best of each")
+    ]
+    assert {each.comparison.correction for each in found if each.comparison} == {"none"}
+
+
+def test_a_line_of_the_summary_describes_a_group() -> None:
+    table = summary_table(comparisons(data("am", "wm")), "m")
+    [row] = table[
+        (table["view"] == "n = 2") & (table["group"] == "WM") & (table["yardstick"] == "score")
+    ].to_dict(orient="records")
+    assert row["runs"] == 6
+    assert row["median (m)"] == pytest.approx(1.025)
+    assert row["mean (m)"] == pytest.approx(math.fsum(1 + run / 100 for run in range(6)) / 6)
+    assert row["letters"]
+
+
+def test_all_pairs_are_there_from_the_best_down() -> None:
+    found = comparisons(data("am", "wm", "gm"))
+    pairs, rankings = pairs_table(found), ranking_table(found)
+    within = pairs[(pairs["view"] == "n = 2") & (pairs["yardstick"] == "score")]
+    assert [*zip(within["first"], within["second"], strict=True)] == [
+        ("GM", "WM"),
+        ("GM", "AM"),
+        ("WM", "AM"),
+    ]
+    assert set(within["A12"]) == {1.0}
+    [ranking, *_] = rankings["ranking"]
+    assert ranking.startswith("GM ")
+
+
+def test_one_group_is_described_and_not_compared() -> None:
+    found = comparisons(data("am"))[:1]
+    assert found[0].comparison is None
+    assert list(summary_table(found)["letters"]) == [""]
+    for table in (pairs_table(found), ranking_table(found)):
+        assert table.empty
+        assert {"view", "yardstick"} < set(table.columns)
+
+
+def test_versions_are_leaves_of_the_provenance() -> None:
+    table = versions_table({"evoframe": "1", "cpu": {"features": ["a", "b"]}})
+    assert dict(zip(table["what"], table["which"], strict=True)) == {"evoframe": "1", "cpu.features": "a, b"}
+    assert versions_table({}).empty

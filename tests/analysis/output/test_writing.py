@@ -1,0 +1,46 @@
+"""The same content gives the same bytes, and files are where they were asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+from evoframe.analysis.output.writing import figure_files, prepare_directory, table_files, write_files
+from evoframe.errors import InputError
+
+
+def figure() -> Figure:
+    """Return a figure whose layout is arranged."""
+    made = Figure(figsize=(2, 1), layout="constrained")
+    made.add_subplot().plot([0, 1], [1, 0])
+    return made
+
+
+def test_a_figure_is_the_same_every_time_and_has_a_name_of_its_own() -> None:
+    files = figure_files(figure(), "a")
+    assert files == figure_files(figure(), "a")
+    assert [*files] == ["a.pdf", "a.svg", "a.png"]
+    assert files["a.pdf"].startswith(b"%PDF")
+    assert files["a.png"].startswith(b"\x89PNG")
+    assert figure_files(figure(), "b")["b.svg"] != files["a.svg"]  # two of them may stand in one page
+
+
+def test_a_table_is_exact_for_programs_and_short_for_people() -> None:
+    files = table_files(pd.DataFrame({"ranking": ["A > B"], "p": [0.123456789], "none": [None]}), "t")
+    assert files["t.csv"] == b"ranking,p,none\nA > B,0.123456789,\n"
+    assert rb"A \textgreater{} B & 0.1235 & - \\" in files["t.tex"]
+
+
+def test_files_are_written_under_their_names(tmp_path: Path) -> None:
+    there = prepare_directory(tmp_path / "a" / "b")
+    assert write_files({"x": b"1", "y": b"2"}, there) == [there / "x", there / "y"]
+    assert {path.name: path.read_bytes() for path in there.iterdir()} == {"x": b"1", "y": b"2"}
+
+
+def test_a_directory_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match=r"file/r: cannot be used for a report: Not a directory"):
+        prepare_directory(tmp_path / "file" / "r")

@@ -1,0 +1,56 @@
+"""The report of a run has its last figures, and says whether it is finished."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+import toy_box
+import toys
+
+from evoframe import Plugins, Run, run
+from evoframe.analysis.page.html import Source, Table
+from evoframe.analysis.report.run_report import draft_of_run
+
+
+@pytest.fixture
+def plugins() -> Plugins:
+    return toy_box.installed()
+
+
+@pytest.fixture
+def made(plugins: Plugins, tmp_path: Path) -> Run:
+    """A run of toys."""
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    return run(tmp_path / "toy.toml", out=tmp_path / "r", plugins=plugins)
+
+
+def test_its_summary_is_that_of_the_record(made: Run, plugins: Plugins) -> None:
+    draft = draft_of_run(made, plugins)
+    rows = csv.DictReader(draft.files["summary.csv"].decode().splitlines())
+    figures = {row["figure"]: float(row["value (1)"]) for row in rows}
+    last = {row["population"]: row for row in made.turns()}
+    assert figures == {
+        "best pair": made.champion().score,
+        **{f"{name}: {what} fitness": row[what] for name, row in last.items() for what in ("best", "mean")},
+        "pair of the fittest": made.summary()["fittest_pair_score"],
+    }
+
+
+def test_its_words_count_turns_and_pairs(made: Run, plugins: Plugins) -> None:
+    draft = draft_of_run(made, plugins)
+    pairs = sum(row["pairs"] for row in made.workload())
+    assert draft.words == f"r: {draft.lead}\n"
+    assert draft.lead.endswith(f"; {made.last_turn:,} turns, {pairs:,} pairs; finished")
+
+
+def test_its_page_begins_with_the_champion_and_ends_with_the_configuration(
+    made: Run, plugins: Plugins
+) -> None:
+    first, *_, last = draft_of_run(made, plugins).sections
+    assert (first.title, last.title) == ("Champion", "Configuration")
+    source, versions = last.blocks
+    assert isinstance(source, Source)
+    assert source.text == (made.directory / "config.toml").read_text()
+    assert isinstance(versions, Table)

@@ -1,0 +1,40 @@
+"""Findings are written beside the scores, and as JSON for a program."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pandas as pd
+from measuring import measure
+
+from evoframe.analysis.robustness import as_json, conclusions, find, records, write_findings, write_robustness
+
+
+def test_findings_do_not_touch_the_scores(tmp_path: Path) -> None:
+    found = find(measure([1.0, 2.0], 10))
+    everything = write_robustness(found, tmp_path / "r")
+    scores = (tmp_path / "r" / "scores.csv").read_bytes()
+    again = write_findings(found, tmp_path / "r")
+    assert {*everything} - {*again} == {tmp_path / "r" / name for name in ("scores.csv", "robustness.json")}
+    assert (tmp_path / "r" / "scores.csv").read_bytes() == scores
+    assert (tmp_path / "r" / "conclusions.txt").read_text() == conclusions(found)
+
+
+def test_tables_in_json_are_those_of_the_files(tmp_path: Path) -> None:
+    found = find(measure([1.0, 2.0, 3.0], 20, groups="XXY", most=1.5))
+    write_robustness(found, tmp_path / "r")
+    document = json.loads(json.dumps(as_json(found), allow_nan=False))
+    for name, rows in document["tables"].items():
+        with (tmp_path / "r" / f"{name}.csv").open() as file:
+            told = list(csv.DictReader(file))
+        assert [[*row] for row in told] == [[*row] for row in rows]
+        for line, row in zip(told, rows, strict=True):
+            for key, value in row.items():
+                assert line[key] == ("" if value is None else str(value))
+
+
+def test_what_is_missing_is_none() -> None:
+    table = pd.DataFrame({"a": [1.5, float("nan")], "b": ["x", None]})
+    assert records(table) == [{"a": 1.5, "b": "x"}, {"a": None, "b": None}]

@@ -1,0 +1,27 @@
+"""The list of corrections costs a command line nothing, and statsmodels knows all of them."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from processes import python
+from statsmodels.stats.multitest import multipletests
+
+from evoframe.analysis.statistics import CORRECTIONS, Correction
+
+HEAVY = "matplotlib", "pandas", "plotly", "scikit_posthocs", "scipy", "statsmodels"
+
+
+def test_no_library_of_statistics_is_loaded_for_it(tmp_path: object) -> None:
+    program = (
+        "import sys, evoframe.analysis.statistics.corrections;"
+        f"print([name for name in {HEAVY} if name in sys.modules])"
+    )
+    assert python("-c", program).stdout.strip() == "[]"
+
+
+def test_each_is_one_that_statsmodels_knows_or_none() -> None:
+    assert get_args(Correction) == CORRECTIONS
+    for correction in CORRECTIONS:
+        if correction != "none":
+            assert multipletests([0.01, 0.02], method=correction)[1].max() >= 0.02
