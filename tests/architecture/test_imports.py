@@ -95,8 +95,13 @@ UNUSUAL: Mapping[str, Unusual] = {
     ),
     "fcntl": Unusual("asks Linux for a signal when a parent ends", {"src/evoframe/workers/processes.py"}),
     "importlib": Unusual(
-        "loads the commands of the program, and plugins that a person installed or named",
-        {"src/evoframe/cli/program.py", "src/evoframe/registry/discovery.py"},
+        "loads rooms and commands of our own on demand, and plugins that a person installed or named",
+        {
+            "src/evoframe/analysis/__init__.py",
+            "src/evoframe/analysis/statistics/__init__.py",
+            "src/evoframe/cli/program.py",
+            "src/evoframe/registry/discovery.py",
+        },
     ),
     "multiprocessing": Unusual(
         "pickles what passes between processes of one program; nothing from a file or a network",
@@ -124,7 +129,12 @@ UNUSUAL: Mapping[str, Unusual] = {
     ),
 }
 
-NAMES_OF_MODULES = {"cffi": set[str](), "matplotlib": {"matplotlib", "mpl_toolkits"}, "neat_python": {"neat"}}
+NAMES_OF_MODULES = {
+    "cffi": set[str](),
+    "matplotlib": {"matplotlib", "mpl_toolkits"},
+    "neat_python": {"neat"},
+    "python_slugify": {"slugify"},
+}
 """Distributions whose modules are called otherwise; cffi makes the bindings, and is not imported."""
 
 BARE = frozenset({"eval", "exec", "compile", "__import__"})
