@@ -2,29 +2,15 @@
 
 from __future__ import annotations
 
-import ast
-import re
 import types
 from pathlib import Path
 
 import pytest
+from house import PACKAGES, ROOT, imports_of
 
 import evoframe
 
-ROOT = Path(__file__).parents[2]
 PLUGIN_FILES = sorted(ROOT.glob("plugins/*/evoframe_*/**/*.py"))
-SOURCES = sorted([*(ROOT / "src").rglob("*.py"), *PLUGIN_FILES, *ROOT.glob("lib*/evoframe_*/*.py")])
-
-
-def imports_of(path: Path) -> list[tuple[str, str]]:
-    """Return (module, name) of everything that a file imports."""
-    found = []
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            found += [(alias.name, "") for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            found += [(node.module or "", alias.name) for alias in node.names]
-    return found
 
 
 def test_there_are_plugins() -> None:
@@ -37,11 +23,6 @@ def test_plugins_import_only_the_public_api(path: Path) -> None:
         if module.split(".")[0] == "evoframe":
             assert module == "evoframe", f"{path}: {module}"
             assert name in evoframe.__all__, f"{path}: {name}"
-
-
-@pytest.mark.parametrize("path", SOURCES, ids=lambda path: f"{path.parent.name}/{path.name}")
-def test_nothing_that_is_read_is_executed(path: Path) -> None:
-    assert not re.findall(r"pickle|\beval\(|\bexec\(|yaml\.load|shell=True", path.read_text())
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "src").rglob("*.py")), ids=lambda path: path.name)
@@ -57,6 +38,5 @@ def test_public_names_exist_and_say_what_they_are(name: str) -> None:
 
 
 def test_every_package_is_typed() -> None:
-    packages = [ROOT / "src/evoframe", *ROOT.glob("lib*/evoframe_*"), *ROOT.glob("plugins/*/evoframe_*")]
-    assert len(packages) > 1
-    assert all((package / "py.typed").exists() for package in packages)
+    assert len(PACKAGES) > 1
+    assert all((package / "py.typed").exists() for package in PACKAGES)

@@ -8,19 +8,24 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import attrs
 import pytest
 import tomli_w
 from hypothesis import given, strategies as st
+from modules import plugin
 
 import evoframe
 from evoframe import ConfigurationError, RunConfig
 from evoframe.config.layers import preset_names
 from evoframe.config.resolve import load_config
+from evoframe.contract.config import Source
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 from evoframe_evolvers import Neat
 
 Load = Callable[..., RunConfig]
+
+HERE = Source("here", "1.0", "main")
 
 
 @functools.cache
@@ -85,60 +90,6 @@ class TestPresets:
             assert (neat.survival_threshold, neat.max_stagnation) == (0.4, 20)
 
 
-class TestMerging:
-    def test_a_changed_name_drops_the_options_of_the_old_one(self, installed: Plugins) -> None:
-        weights = 'aggregator={name="wm", weights=[0.7, 0.3]}'
-        config = load_config("paper", overrides=[weights, "aggregator=hm"], plugins=installed)
-        assert config.aggregator.name == "hm"
-        assert "weights" not in config.tables()["aggregator"]
-
-    def test_the_same_name_keeps_them(self, installed: Plugins) -> None:
-        config = load_config(
-            "paper", overrides=["simulator.duration=0.08", "simulator=vox"], plugins=installed
-        )
-        assert config.tables()["simulator"]["duration"] == 0.08
-
-    def test_a_file_starts_from_paper_unless_it_says_otherwise(
-        self, installed: Plugins, tmp_path: Path
-    ) -> None:
-        path = tmp_path / "my.toml"
-        path.write_text('[aggregator]\nname = "wm"\nweights = [0.7, 0.3]\n')
-        config = load_config(path, plugins=installed)
-        assert config.tables()["aggregator"]["weights"] == [0.7, 0.3]
-        assert config.run.generations == 200
-        assert config.label == "my"
-        path.write_text('extends = "quick"\naggregator = "am"\n')
-        assert load_config(path, plugins=installed).run.generations == 5
-
-    def test_a_file_may_extend_a_file_beside_it(self, installed: Plugins, tmp_path: Path) -> None:
-        (tmp_path / "base.toml").write_text("[run]\ngenerations = 7\n")
-        (tmp_path / "top.toml").write_text('extends = "base.toml"\naggregator = "am"\n')
-        assert load_config(tmp_path / "top.toml", plugins=installed).run.generations == 7
-
-    def test_what_a_run_wrote_about_itself_is_no_setting(self, toy_config: Load, toy_file: Path) -> None:
-        plain = toy_config()
-        toy_file.write_text(toy_file.read_text() + '\n[provenance]\nevoframe = "0.1.0"\n')
-        assert toy_config() == plain
-
-    @pytest.mark.parametrize(
-        ("text", "value"),
-        [
-            ("2", 2),
-            ("0.5", 0.5),
-            ("true", True),
-            ("hm", "hm"),
-            ('"a b"', "a b"),
-            ("[1, 2]", [1, 2]),
-            ("1e-3", 1e-3),
-        ],
-    )
-    def test_the_right_side_of_set_is_toml_and_a_bare_word_is_a_string(self, text: str, value: Any) -> None:
-        from evoframe.config.layers import read_layers  # noqa: PLC0415
-
-        tree = read_layers("paper", overrides=[f"aggregator.x={text}"]).merged()
-        assert tree["aggregator"]["x"] == value
-
-
 FAULTS = [
     ("aggregator=toy-mena", "unknown aggregator 'toy-mena'; did you mean 'toy-mean'? installed: toy-mean"),
     ("collaboration.n=30", "collaboration: 30 collaborators of 6 members"),
@@ -200,96 +151,6 @@ class TestFaults:
             str(caught.value) == f"{toy_file}: collaboration: 30 collaborators of 6 members (population 'a')"
         )
 
-    def test_a_file_that_is_no_toml_says_where(self, toy_config: Load, toy_file: Path) -> None:
-        toy_file.write_text("[run\nseed = 1")
-        with pytest.raises(ConfigurationError, match=r"toy\.toml: not valid TOML: .*line 1"):
-            toy_config()
-        toy_file.write_bytes(b"\xff\xfe")
-        with pytest.raises(ConfigurationError, match="not UTF-8"):
-            toy_config()
-
-    @pytest.mark.parametrize(
-        "text",
-        [
-            "x = " + "[" * 5000,
-            "x = " + "1" * 5000,
-            'extends = "a\\u0000.toml"',
-            'extends = ""',
-            "extends = 3",
-            'extends = "."',
-        ],
-        ids=lambda text: text[:20],
-    )
-    def test_a_file_that_is_out_of_all_bounds_is_refused(
-        self, toy_config: Load, toy_file: Path, text: str
-    ) -> None:
-        toy_file.write_text(text)
-        with pytest.raises(ConfigurationError):
-            toy_config()
-
-    def test_a_missing_file_is_named(self, tmp_path: Path, toy_plugins: Plugins) -> None:
-        with pytest.raises(ConfigurationError, match=r"nowhere\.toml: cannot be read: No such file"):
-            load_config(tmp_path / "nowhere.toml", plugins=toy_plugins)
-
-    def test_an_unknown_preset_offers_those_that_exist(self, toy_plugins: Plugins) -> None:
-        with pytest.raises(
-            ConfigurationError, match=r"no preset 'papr'; did you mean 'paper'\? presets: authors"
-        ):
-            load_config("papr", plugins=toy_plugins)
-
-    @pytest.mark.parametrize(
-        ("base", "message"),
-        [
-            ("papr", r"a\.toml: extends: there is no preset 'papr'"),
-            ("b.toml", r"a\.toml: extends: .*b\.toml: cannot be read"),
-        ],
-    )
-    def test_what_a_file_extends_in_vain_is_named_with_it(
-        self, tmp_path: Path, toy_plugins: Plugins, base: str, message: str
-    ) -> None:
-        (tmp_path / "a.toml").write_text(f'extends = "{base}"')
-        with pytest.raises(ConfigurationError, match=message):
-            load_config(tmp_path / "a.toml", plugins=toy_plugins)
-
-    def test_files_that_extend_each_other_are_refused(self, tmp_path: Path, toy_plugins: Plugins) -> None:
-        (tmp_path / "a.toml").write_text('extends = "b.toml"')
-        (tmp_path / "b.toml").write_text('extends = "a.toml"')
-        with pytest.raises(ConfigurationError, match="extends itself"):
-            load_config(tmp_path / "a.toml", plugins=toy_plugins)
-
-    def test_a_file_that_extends_itself_by_another_name_is_refused(
-        self, tmp_path: Path, toy_plugins: Plugins
-    ) -> None:
-        (tmp_path / "folder").mkdir()
-        (tmp_path / "a.toml").write_text('extends = "folder/../a.toml"')
-        with pytest.raises(ConfigurationError, match="extends itself"):
-            load_config(tmp_path / "a.toml", plugins=toy_plugins)
-
-    @pytest.mark.parametrize(
-        "text",
-        [f"[{'a.' * 3000}a]", f"{'a.' * 3000}a = 1", f"a = {'[' * 50}{']' * 50}", "a.b = [{c = [[]]}]"],
-    )
-    def test_only_deep_tables_and_lists_are_refused_for_their_depth(
-        self, toy_config: Load, toy_file: Path, text: str
-    ) -> None:
-        toy_file.write_text(text)
-        expected = "nested more than 32 deep" if len(text) > 30 else "unknown key"
-        with pytest.raises(ConfigurationError, match=expected):
-            toy_config()
-
-    def test_a_deep_key_is_refused(self, toy_config: Load) -> None:
-        with pytest.raises(ConfigurationError, match="nested more than 32 deep"):
-            toy_config(f"{'a.' * 3000}a=1")
-
-    def test_a_file_without_end_is_refused(self, toy_plugins: Plugins) -> None:
-        with pytest.raises(ConfigurationError, match="/dev/zero: is larger than 16 MiB"):
-            load_config("/dev/zero", plugins=toy_plugins)
-
-    @pytest.mark.parametrize("text", ["aggregator", "=hm", "a b=1", "aggregator=[1", "run.seed=1\nrun.x=2"])
-    def test_an_override_that_is_none_is_refused(self, toy_config: Load, text: str) -> None:
-        with pytest.raises(ConfigurationError, match="--set"):
-            toy_config(text)
-
     def test_one_population_is_not_enough(self, toy_config: Load, toy_file: Path) -> None:
         text = toy_file.read_text()
         start, end = text.index("[populations.b]"), text.index("[collaboration]")
@@ -318,8 +179,14 @@ class TestRealComponents:
                 "simulator.duration=0.03",
                 ["--set simulator.duration=0.03: objective: ", "sample 5", "simulator.duration = 0.03 s"],
             ),
-            ("simulator.voxel_size=1e9", ["simulator.voxel_size: must be between 1e-6 and 1e6 m, found 1000000000.0"]),
-            ("simulator.duration=1e300", ["simulator.duration: must be above 0 and at most 1e9 s, found 1e+300"]),
+            (
+                "simulator.voxel_size=1e9",
+                ["simulator.voxel_size: must be between 1e-6 and 1e6 m, found 1000000000.0"],
+            ),
+            (
+                "simulator.duration=1e300",
+                ["simulator.duration: must be above 0 and at most 1e9 s, found 1e+300"],
+            ),
             ("simulator.phase_unit=degrees", ['expected one of "cycles", "radians", found "degrees"']),
             ("objective.last=0", ["objective.last: must be >= 1, found 0"]),
             ("objective.first=7", ["objective: first must come before last"]),
@@ -372,3 +239,39 @@ def test_any_configuration_survives_a_round_trip(
     again = load_config(path, plugins=plugins)
     assert again == config
     assert tomli_w.dumps(again.tables()) == config.to_toml()
+
+
+@attrs.define
+class Changeable:
+    domain = (-1e100, 1e100)
+
+    def check(self, n: int) -> None:
+        pass
+
+    def aggregate(self, scores: Any) -> float:
+        return 0.0
+
+
+@attrs.frozen
+class Unfinished:
+    domain = (-1e100, 1e100)
+
+    def aggregate(self, scores: Any) -> float:
+        return 0.0
+
+
+class TestComponentsOfOthers:
+    @pytest.mark.parametrize(
+        ("component", "message"),
+        [
+            (Changeable, "aggregator 'mine' of plugin 'main' of here 1.0 is no frozen attrs class"),
+            (Unfinished, "aggregator 'mine' of plugin 'main' of here 1.0 has no check"),
+        ],
+    )
+    def test_are_held_to_their_protocol_when_they_are_chosen(
+        self, toy_plugins: Plugins, toy_config: Callable[..., RunConfig], component: type[Any], message: str
+    ) -> None:
+        toy_plugins.add(plugin(evoframe_aggregators=lambda: {"mine": component}), HERE)
+        toy_config()  # as long as nobody asks for it, all is well
+        with pytest.raises(ConfigurationError, match=f"--set aggregator=mine: aggregator: {message}"):
+            toy_config("aggregator=mine")

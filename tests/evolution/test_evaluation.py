@@ -116,12 +116,3 @@ def test_a_diverged_simulation_has_its_step_and_no_value() -> None:
 def test_an_objective_that_gives_no_number_stops_the_run() -> None:
     with pytest.raises(RunError, match="objective: gave the score nan"):
         attrs.evolve(evaluator(Counting()), objective=Nameless()).evaluate([design(1, 1)], 1)
-
-
-def test_a_design_cannot_be_changed_behind_the_cache() -> None:
-    array = np.array([1.0])
-    given_design = Design({"a": array})
-    array[0] = 2.0
-    assert given_design.roles["a"][0] == 1.0
-    with pytest.raises(ValueError, match="read-only"):
-        given_design.roles["a"][0] = 3.0

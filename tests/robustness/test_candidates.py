@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import toys
 
-from evoframe import ConfigurationError, Design, InputError, Plugins, load_run, measure_robustness, run
+from evoframe import ConfigurationError, Design, InputError, Plugins, run
 from evoframe.contract.config import RunConfig
 from evoframe.robustness.candidates import Candidates, read_candidates
 from evoframe.study.conduct import claim
@@ -34,12 +34,6 @@ Read = Callable[..., Candidates]
 
 
 @pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-@pytest.fixture
 def read(here: Path, toy_file: Path, toy_plugins: Plugins) -> Read:
     def read_them(
         *sources: str, preset: str | None = None, overrides: Sequence[str] = (), published: bool = False
@@ -48,13 +42,6 @@ def read(here: Path, toy_file: Path, toy_plugins: Plugins) -> Read:
         return read_candidates(paths, preset, overrides, toy_plugins, published=published)
 
     return read_them
-
-
-@pytest.fixture
-def two_runs(here: Path, toy_config: Callable[..., RunConfig]) -> list[str]:
-    for seed in (1, 2):
-        run(toy_config(STEERED, f"run.seed={seed}"), out=f"run-{seed}")
-    return ["run-1", "run-2"]
 
 
 def make_study(directory: str, plugins: Plugins, finished: int = 4, executor: str = "toy-here") -> None:
@@ -195,20 +182,3 @@ def test_a_simulator_without_random_controllers_is_refused(
     run(toy_config(), out="here")
     with pytest.raises(ConfigurationError, match=r"^the simulator 'toy-product' draws no random controllers"):
         read("here")
-
-
-class TestFromPython:
-    def test_runs_and_paths_are_measured(self, toy_plugins: Plugins, two_runs: list[str]) -> None:
-        found = measure_robustness(load_run(Path("run-1")), "run-2", controllers=5, plugins=toy_plugins)
-        assert [body.label for body in found.setting.bodies] == two_runs
-        assert found.scores.shape == (5, 2)
-        assert found.setting.simulation["simulator"]["name"] == "toy-steered"
-        louder = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins, simulator={"gain": 2.0})
-        assert (louder.scores == 2 * found.scores).all()
-
-    @pytest.mark.parametrize(("controllers", "seed"), [(0, 1), (1, -1)])
-    def test_what_cannot_be_drawn_is_refused(
-        self, toy_plugins: Plugins, two_runs: list[str], controllers: int, seed: int
-    ) -> None:
-        with pytest.raises(ConfigurationError, match=r"^expected 1 or more controllers and a seed from 0 up"):
-            measure_robustness("run-1", plugins=toy_plugins, controllers=controllers, seed=seed)

@@ -82,6 +82,13 @@ def test_it_is_read_back_exactly(
     assert_same(read_robustness(directory), measured)
 
 
+def test_what_is_written_is_named_and_read_back(measured: Robustness, tmp_path: Path) -> None:
+    paths = files.write_measurement(measured, tmp_path)
+    assert [path.name for path in paths] == [files.SCORES_FILE, files.SETTING_FILE]
+    assert set(tmp_path.iterdir()) == set(paths)
+    assert_same(read_robustness(tmp_path), measured)
+
+
 def test_json_has_everything(measured: Robustness) -> None:
     document = json.loads(json.dumps(as_json(find(measured)), allow_nan=False))
     scores = np.array(document["scores"], dtype=np.float64)

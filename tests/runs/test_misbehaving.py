@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,6 @@ import toys
 from recorded import assert_same_result
 
 from evoframe import Member, Outcome, Plugins, RunConfig, RunError, load_run, resume, run
-from evoframe.errors import ComponentError
 from evoframe.messages import full_text
 
 Load = Callable[..., RunConfig]
@@ -187,9 +185,3 @@ def test_an_executor_that_loses_results_is_named(
     monkeypatch.setattr(toys.Here, "map", forgetful)
     with pytest.raises(RunError, match=r"executor: 'toy-here' .*: did not return the results of all batches"):
         run(toy_config(), out=tmp_path / "run")
-
-
-def test_passes_between_processes_with_all_that_it_says() -> None:
-    error = ComponentError("simulator", "failed", "a 1 with b 2", keys=(b"key",))
-    copied = pickle.loads(pickle.dumps(error))  # noqa: S301 - our own
-    assert (str(copied), copied.keys) == ("simulator: failed (a 1 with b 2)", (b"key",))

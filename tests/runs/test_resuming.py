@@ -10,16 +10,13 @@ from pathlib import Path
 
 import pytest
 import toys
-from hypothesis import HealthCheck, given, settings, strategies as st
 from opening import configuration_of, has_begun, reopened
 from recorded import assert_same_result, rewritten, rows
 
 import evoframe.record.provenance
 from evoframe import ConfigurationError, InputError, Plugins, RunConfig, RunError, load_run, resume, run
 from evoframe.contract.config import Source
-from evoframe.documents.trees import differences
 from evoframe.files.locks import acquire_lock
-from evoframe.record.checksums import Checksums
 from evoframe.record.store import Store
 from evoframe.runs.starting import prepare
 
@@ -230,45 +227,6 @@ class TestDisk:
         undisturbed = run(toy_config(), out=tmp_path / "undisturbed")
         shutil.move(left, tmp_path / "moved")
         assert_same_result(undisturbed.directory, resume(tmp_path / "moved", plugins=toy_plugins).directory)
-
-
-trees = st.recursive(
-    st.integers() | st.text(max_size=3) | st.lists(st.integers(), max_size=2),
-    lambda inner: st.dictionaries(st.text("abc", min_size=1, max_size=2), inner, max_size=3),
-    max_leaves=6,
-)
-tables = st.dictionaries(st.text("abc", min_size=1, max_size=2), trees, max_size=3)
-
-
-@given(tables, tables)
-def test_trees_differ_where_and_only_where_they_are_not_equal(
-    first: dict[str, object], second: dict[str, object]
-) -> None:
-    assert differences(first, first) == []
-    assert bool(differences(first, second)) == (first != second)
-
-
-values = st.none() | st.integers(-(2**62), 2**62) | st.floats(allow_nan=False) | st.text(max_size=4)
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.lists(st.lists(values, min_size=1, max_size=3), max_size=6), st.integers(0, 6))
-def test_a_checksum_does_not_depend_on_how_rows_arrive(given_rows: list[list[object]], cut: int) -> None:
-    whole, parts = Checksums(), Checksums()
-    whole.add("pairs", given_rows)
-    parts.add("pairs", given_rows[:cut])
-    parts.add("pairs", given_rows[cut:])
-    assert whole.of("pairs") == parts.of("pairs")
-    with sqlite3.connect(":memory:") as database:
-        database.execute("CREATE TABLE t (a)")
-        flat = [(row[0],) for row in given_rows]
-        database.executemany("INSERT INTO t VALUES (?)", flat)
-        read = database.execute("SELECT a FROM t").fetchall()
-    database.close()
-    written, found = Checksums(), Checksums()
-    written.add("pairs", flat)
-    found.add("pairs", read)
-    assert written.of("pairs") == found.of("pairs")
 
 
 def test_a_resume_is_noted_only_beside_the_results(left: Path, toy_plugins: Plugins) -> None:

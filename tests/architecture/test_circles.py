@@ -1,0 +1,70 @@
+"""Imports go in one direction: between modules, and between the parts of each package."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from house import CORE, PACKAGES, circles, parts, uses
+
+UPWARD: Mapping[tuple[str, str], str] = {
+    ("evoframe.record.run", "evoframe"): "Run.report() looks for the public report() when it is called",
+}
+"""Imports that make circles, and why each is there; best would be none."""
+
+WHOLE = {package.name: uses(package) for package in PACKAGES}
+GRAPHS = {
+    name: {module: used - {end for start, end in UPWARD if start == module} for module, used in graph.items()}
+    for name, graph in WHOLE.items()
+}
+INNER = [
+    (name, package)
+    for name, graph in GRAPHS.items()
+    for package in {m.rpartition(".")[0] for m in graph} - {""}
+]
+
+
+@pytest.mark.parametrize("name", GRAPHS)
+def test_no_modules_import_each_other(name: str) -> None:
+    assert circles(GRAPHS[name]) == []
+
+
+@pytest.mark.parametrize(("name", "package"), sorted(INNER))
+def test_no_parts_of_a_package_import_each_other(name: str, package: str) -> None:
+    """Rooms of the core too: what stands in one may not need another that needs it."""
+    assert circles(parts(GRAPHS[name], package)) == []
+
+
+@pytest.mark.parametrize(("start", "end"), UPWARD)
+def test_an_import_that_goes_up_is_still_there_and_still_makes_a_circle(start: str, end: str) -> None:
+    graph = WHOLE[start.partition(".")[0]]
+    assert end in graph[start]
+    assert any({start, end} <= set(circle) for circle in circles(graph))
+
+
+class TestCircles:
+    """A law that finds nothing must be able to find something."""
+
+    def test_are_found_with_all_that_are_in_them(self) -> None:
+        graph = {"a": {"b"}, "b": {"c"}, "c": {"a", "d"}, "d": {"e"}, "e": {"d"}, "f": {"a"}}
+        assert circles(graph) == [["a", "b", "c"], ["d", "e"]]
+
+    def test_between_rooms_are_found_where_no_modules_import_each_other(self) -> None:
+        graph = {"h.a.x": {"h.b.x"}, "h.a.y": set[str](), "h.b.x": set[str](), "h.b.y": {"h.a.y"}}
+        assert circles(graph) == []
+        assert circles(parts(graph, "h")) == [["a", "b"]]
+
+    def test_count_imports_within_functions_and_for_type_checkers(self, tmp_path: Path) -> None:
+        texts = {
+            "__init__": "",
+            "a": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from house_of.b import B",
+            "b": "def f():\n    from house_of import a",
+        }
+        (tmp_path / "house_of").mkdir()
+        for name, text in texts.items():
+            (tmp_path / "house_of" / f"{name}.py").write_text(text)
+        assert circles(uses(tmp_path / "house_of")) == [["house_of.a", "house_of.b"]]
+
+    def test_would_go_through_the_lazy_names_of_the_public_api(self) -> None:
+        assert "evoframe.runs.starting" in GRAPHS[CORE.name]["evoframe"]

@@ -1,0 +1,113 @@
+"""Tests stand where the module that they are about stands, under its name."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+from house import AWAITED, CORE, PLUGIN_PACKAGES, ROOT
+
+TESTS = ROOT / "tests"
+
+ELSEWHERE: Mapping[str, str] = {
+    **{
+        f"src/evoframe/testing/{kind}s.py": f"tests/testing/test_{kind}_contract.py"
+        for kind in ("aggregator", "encoder", "evolver", "executor", "objective", "simulator")
+    },
+    "src/evoframe/testing/strategies.py": "tests/testing/test_strategy_contract.py",
+}
+"""Modules whose tests have another name: the contracts are tests, and are tested by breaking them."""
+
+UNTESTED: Mapping[str, str] = {
+    "src/evoframe/analysis/api.py": "passes calls on; tests of studies and of reports come through it",
+    "src/evoframe/__main__.py": "starts the program: all tests of the command line come through it",
+    "src/evoframe/_version.py": "a number",
+    "src/evoframe/testing/laws.py": "what contracts share; the tests of all contracts go through it",
+    "plugins/executors/evoframe_executors/options.py": "validators; tests of all executors go through them",
+}
+"""Modules without tests of their own, and why."""
+
+FOLDERS: Mapping[str, str] = {
+    "architecture": "laws about the source as a whole",
+    "benchmarks": "the programs in benchmarks/",
+    "browser": "pages of reports, in Chromium",
+    "data": "files that tests read",
+    "experiment": "the paper's experiment against its documents",
+    "fuzz": "inputs that nobody would write",
+    "libcppn": "the C library and its binding",
+    "libvox": "the C library and its binding",
+    "plugins": "a folder for each in plugins/",
+    "support": "what several tests use",
+    "survival": "kills and damage, through all rooms",
+    "third_party": "distributions of other people",
+}
+"""Folders of tests that mirror no room, and what is in them."""
+
+
+def has_tests_to_find(path: Path) -> bool:
+    """Return whether a module says anything itself: a front only passes names on."""
+    if path.name != "__init__.py":
+        return True
+    return any(isinstance(node, ast.ClassDef) for node in ast.parse(path.read_text()).body)
+
+
+def mirrored() -> Iterator[tuple[Path, Path]]:
+    """Yield each module, and the file that its tests belong into."""
+    for package in (CORE, *PLUGIN_PACKAGES):
+        folder = TESTS if package == CORE else TESTS / "plugins" / package.parent.name
+        for path in filter(has_tests_to_find, sorted(package.rglob("*.py"))):
+            inner = path.relative_to(package)
+            name = package.parent.name if path.name == "__init__.py" else path.stem
+            yield path, folder / inner.parent / f"test_{name}.py"
+
+
+def filled(folder: Path) -> Iterator[str]:
+    """Yield the names of folders with files in them: what Python compiled may outlive its source."""
+    for path in folder.iterdir():
+        if path.is_dir() and any(
+            each.is_file() and "__pycache__" not in each.parts for each in path.rglob("*")
+        ):
+            yield path.name
+
+
+MIRRORED = {str(path.relative_to(ROOT)): tests for path, tests in mirrored()}
+
+
+def is_awaited(tests: Path) -> bool:
+    return tests.relative_to(TESTS).parts[0] in AWAITED
+
+
+@pytest.mark.parametrize("module", MIRRORED)
+def test_every_module_has_its_tests(module: str) -> None:
+    tests = ROOT / ELSEWHERE[module] if module in ELSEWHERE else MIRRORED[module]
+    assert tests.is_file() or module in UNTESTED or is_awaited(tests), (
+        f"{module} needs {tests.relative_to(ROOT)}"
+    )
+
+
+@pytest.mark.parametrize("module", [*ELSEWHERE, *UNTESTED])
+def test_exceptions_are_of_modules_that_need_them(module: str) -> None:
+    assert module in MIRRORED
+    assert not MIRRORED[module].exists()
+
+
+def test_every_folder_of_tests_mirrors_a_room_or_says_what_it_is_for() -> None:
+    rooms = {path.parent.name for path in CORE.glob("*/__init__.py")}
+    folders = set(filled(TESTS))
+    assert folders - rooms == FOLDERS.keys()
+
+
+@pytest.mark.parametrize("package", [CORE, *PLUGIN_PACKAGES], ids=lambda package: package.name)
+def test_no_folder_of_tests_mirrors_a_package_that_is_not_there(package: Path) -> None:
+    folder = TESTS if package == CORE else TESTS / "plugins" / package.parent.name
+    others = FOLDERS if package == CORE else ()
+    for path in folder.rglob("test_*.py"):
+        inner = path.parent.relative_to(folder)
+        if not inner.parts or inner.parts[0] not in others:
+            assert (package / inner / "__init__.py").exists(), f"{path}: there is no {package.name}/{inner}"
+
+
+def test_every_plugin_has_a_folder_of_tests() -> None:
+    assert set(filled(TESTS / "plugins")) == {package.parent.name for package in PLUGIN_PACKAGES}

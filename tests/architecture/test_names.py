@@ -1,0 +1,62 @@
+"""Names that do not shadow: ``import evoframe.x`` and ``evoframe.x`` never mean two things."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+from house import AWAITED, CORE, PLUGIN_PACKAGES, ROOT
+
+import evoframe
+
+INITS = [
+    path
+    for package in (CORE, *PLUGIN_PACKAGES)
+    for path in sorted(package.rglob("__init__.py"))
+    if path.relative_to(package).parts[0] not in AWAITED
+]
+
+
+def submodules(package: Path) -> set[str]:
+    """Return the names of modules and packages directly within a package."""
+    inner = {path.parent.name for path in package.glob("*/__init__.py")}
+    return inner | {path.stem for path in package.glob("*.py")} - {"__init__"}
+
+
+def bound(init: Path) -> dict[str, str]:
+    """Return the names that an ``__init__`` gives to its package, and where each is from."""
+    found: dict[str, str] = {}
+    for node in ast.parse(init.read_text()).body:
+        if isinstance(node, ast.ImportFrom):
+            found |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            found[node.name] = "here"
+        elif isinstance(node, ast.Assign):
+            found |= {target.id: "here" for target in node.targets if isinstance(target, ast.Name)}
+        elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            found[node.target.id] = "here"
+    return found
+
+
+def test_no_module_has_the_name_of_something_public() -> None:
+    assert submodules(CORE) & set(evoframe.__all__) == set()
+
+
+@pytest.mark.parametrize("init", INITS, ids=lambda path: str(path.parent.relative_to(ROOT)))
+def test_no_package_gives_the_name_of_a_module_to_something_else(init: Path) -> None:
+    names = bound(init)
+    shadowed = {name: names[name] for name in submodules(init.parent) & names.keys()}
+    itself = {
+        name: origin for name, origin in shadowed.items() if origin.endswith(f"{init.parent.name}.{name}")
+    }
+    assert shadowed == itself  # a package may import its own module
+
+
+def test_names_that_shadow_are_found(tmp_path: Path) -> None:
+    """Or the law above would hold of everything."""
+    for name in ("run", "tools"):
+        (tmp_path / f"{name}.py").write_text("")
+    (tmp_path / "__init__.py").write_text("from here.run import run\nfrom here import tools\n")
+    assert submodules(tmp_path) & bound(tmp_path / "__init__.py").keys() == {"run", "tools"}
+    assert bound(tmp_path / "__init__.py") == {"run": "here.run.run", "tools": "here.tools"}

@@ -1,0 +1,104 @@
+"""Optional capabilities: a component offers one by having its members, all of them."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, Protocol
+
+import numpy as np
+import pytest
+import toys
+
+import evoframe
+from evoframe.contract import optional
+from evoframe.contract.optional import (
+    SupportsExport,
+    SupportsGeometry,
+    SupportsProvenance,
+    SupportsPublished,
+    SupportsRandomControllers,
+    SupportsReading,
+    SupportsSettings,
+    SupportsUnit,
+    SupportsVariants,
+    Variant,
+    unit_of,
+)
+
+CAPABILITIES = {
+    name: value
+    for name, value in vars(optional).items()
+    if name.startswith("Supports") and name in optional.__all__
+}
+
+
+def members_of(protocol: type[Any]) -> set[str]:
+    classes = [
+        each for each in protocol.__mro__ if each not in (object, Protocol) and each.__name__ != "Generic"
+    ]
+    return {name for each in classes for name in vars(each) if not name.startswith("_")}
+
+
+def having(members: set[str]) -> object:
+    """Return something that has these members, and no others."""
+    return type("Component", (), dict.fromkeys(members, 1))()
+
+
+@pytest.mark.parametrize("name", CAPABILITIES)
+def test_a_component_has_a_capability_if_it_has_all_its_members(name: str) -> None:
+    members = members_of(CAPABILITIES[name])
+    assert isinstance(having(members), CAPABILITIES[name])
+    for missing in members:
+        assert not isinstance(having(members - {missing}), CAPABILITIES[name])
+
+
+@pytest.mark.parametrize("name", CAPABILITIES)
+def test_a_capability_is_documented_and_public(name: str) -> None:
+    capability = CAPABILITIES[name]
+    assert getattr(evoframe, name) is capability
+    own = [member for member in vars(capability) if not member.startswith("_")]
+    assert own
+    for member in own:
+        assert inspect.getdoc(vars(capability)[member]), f"{name}.{member}"
+
+
+@pytest.mark.parametrize(
+    ("component", "capabilities"),
+    [
+        (toys.Product(), set()),
+        (toys.Varied(), {SupportsReading, SupportsSettings, SupportsExport, SupportsVariants}),
+        (
+            toys.Steered(),
+            {
+                SupportsReading,
+                SupportsSettings,
+                SupportsExport,
+                SupportsVariants,
+                SupportsRandomControllers,
+                SupportsPublished,
+            },
+        ),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_each_capability_is_offered_on_its_own(component: Any, capabilities: set[Any]) -> None:
+    offered = {each for each in CAPABILITIES.values() if isinstance(component, each)}
+    assert offered == capabilities
+
+
+def test_a_capability_of_one_kind_of_component_is_not_that_of_another() -> None:
+    """A method called ``geometry`` makes no simulator."""
+    assert not isinstance(having({"geometry"}), SupportsGeometry)
+    assert isinstance(having({"provenance"}), SupportsProvenance)
+
+
+def test_an_objective_may_have_a_unit() -> None:
+    assert isinstance(toys.Late(), SupportsUnit)
+    assert (unit_of(toys.Late()), unit_of(toys.Value())) == ("m", "")
+
+
+def test_variants_are_compared_by_who_they_are() -> None:
+    """Their designs are arrays, which have no one truth value."""
+    design = evoframe.Design({"a": np.ones(2)})
+    first, second = (Variant("a", toys.Product(), design, toys.Value.record) for _ in range(2))
+    assert first != second

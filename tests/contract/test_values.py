@@ -1,0 +1,74 @@
+"""Values that travel: nobody changes them on the way."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+from numpy.typing import NDArray
+
+from evoframe import Design, Member, Outcome, Pair, Record, Score, Turn, Workload
+from evoframe.contract import values
+
+numbers = arrays(st.sampled_from(["uint8", "float64"]), array_shapes(max_dims=3, max_side=3))
+
+
+def test_a_design_cannot_be_changed_behind_the_cache() -> None:
+    array = np.array([1.0])
+    given_design = Design({"a": array})
+    array[0] = 2.0
+    assert given_design.roles["a"][0] == 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        given_design.roles["a"][0] = 3.0
+
+
+@given(st.dictionaries(st.sampled_from("abc"), numbers), st.sampled_from("abcd"), numbers)
+def test_a_design_with_another_role_has_that_and_all_others(
+    roles: dict[str, NDArray[Any]], role: str, array: NDArray[Any]
+) -> None:
+    design = Design(roles)
+    wider = design.with_role(role, array)
+    assert wider.roles.keys() == {*roles, role}
+    for name, value in {**roles, role: array}.items():
+        np.testing.assert_array_equal(wider.roles[name], value)
+        assert wider.roles[name].dtype == value.dtype
+    assert design.roles.keys() == roles.keys()
+
+
+def test_what_nobody_can_write_to_is_not_copied() -> None:
+    design = Design({"a": np.ones(3)})
+    assert design.with_role("b", np.zeros(1)).roles["a"] is design.roles["a"]
+
+
+def test_a_list_of_numbers_is_an_array() -> None:
+    roles: Any = {"a": [1.0, 2.0]}  # as a script may well give it
+    assert Design(roles).roles["a"].tolist() == [1.0, 2.0]
+
+
+def test_designs_and_outcomes_are_compared_by_who_they_are() -> None:
+    """Arrays have no one truth value; ``==`` must not raise that."""
+    first, second = (Design({"a": np.ones(2)}) for _ in range(2))
+    assert first != second
+    outcomes = [Outcome(np.zeros(2, np.int64), np.zeros(2), {}) for _ in range(2)]
+    assert outcomes[0] != outcomes[1]
+
+
+def test_turns_are_equal_however_long_they_took() -> None:
+    turn = Turn(1, (), (Pair((1, 2), 0.5),), None, Workload(1, 1, 0.25))
+    assert attrs.evolve(turn, workload=Workload(1, 0, 9.0)) == turn
+    assert attrs.evolve(turn, pairs=(Pair((1, 2), 0.25),)) != turn
+
+
+@pytest.mark.parametrize("name", [name for name in values.__all__ if name != "Scores"])
+def test_values_cannot_be_changed(name: str) -> None:
+    assert attrs.inspect(getattr(values, name)).is_frozen
+
+
+def test_what_is_not_said_is_the_common_case() -> None:
+    assert Record(("a",)) == Record(("a",), every=0.0, samples=None, initial=False, until=0.0)
+    assert Member(1, None) == Member(1, None, None, 0, 0, diverged=False)
+    assert (Score(0.5).diverged_at, Pair((1,), 0.5).diverged_at) == (None, None)

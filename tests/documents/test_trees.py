@@ -1,0 +1,91 @@
+"""Trees of tables: their leaves, and how two of them differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import pytest
+from hypothesis import given, strategies as st
+
+from evoframe.documents.trees import as_read, differences, leaves
+
+trees = st.recursive(
+    st.integers() | st.text(max_size=3) | st.lists(st.integers(), max_size=2),
+    lambda inner: st.dictionaries(st.text("abc", min_size=1, max_size=2), inner, max_size=3),
+    max_leaves=6,
+)
+tables = st.dictionaries(st.text("abc", min_size=1, max_size=2), trees, max_size=3)
+
+
+@given(tables, tables)
+def test_trees_differ_where_and_only_where_they_are_not_equal(
+    first: dict[str, object], second: dict[str, object]
+) -> None:
+    assert differences(first, first) == []
+    assert bool(differences(first, second)) == (first != second)
+
+
+@given(tables, tables)
+def test_differences_seen_from_the_other_side_are_the_same(
+    first: dict[str, object], second: dict[str, object]
+) -> None:
+    there, back = differences(first, second), differences(second, first)
+    assert {line.partition(": ")[0] for line in there} == {line.partition(": ")[0] for line in back}
+
+
+@pytest.mark.parametrize(
+    ("now", "lines"),
+    [
+        ({"run": {"seed": 1}, "weights": [1, 2]}, []),
+        ({"run": {"seed": 2}, "weights": [1, 2]}, ["run.seed: 1 then, 2 now"]),
+        (
+            {"run": {}, "weights": [1]},
+            [
+                "run.seed: 1 then, 'nothing' now",
+                "weights: [1, 2] then, [1] now",
+                "run: 'nothing' then, {} now",
+            ],
+        ),
+        (
+            {"run": 3, "weights": [1, 2], "more": "x"},
+            [
+                "run.seed: 1 then, 'nothing' now",
+                "run: 'nothing' then, 3 now",
+                "more: 'nothing' then, 'x' now",
+            ],
+        ),
+    ],
+)
+def test_a_difference_is_named_by_its_key(now: dict[str, Any], lines: list[str]) -> None:
+    assert differences({"run": {"seed": 1}, "weights": [1, 2]}, now) == lines
+
+
+def test_differences_have_the_words_that_are_asked_for() -> None:
+    assert differences({"a": 1}, {"a": 2}, ("there", "here")) == ["a: 1 there, 2 here"]
+
+
+def grown(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the tree with these leaves."""
+    tree: dict[str, Any] = {}
+    for path, value in pairs:
+        *branches, last = path.split(".")
+        table = tree
+        for branch in branches:
+            table = table.setdefault(branch, {})
+        table[last] = value
+    return tree
+
+
+@given(tables)
+def test_a_tree_is_what_its_leaves_say(tree: dict[str, Any]) -> None:
+    assert grown(leaves(tree)) == tree
+
+
+@given(tables)
+def test_what_was_read_is_as_it_is_read(tree: dict[str, Any]) -> None:
+    assert as_read(tree) == tree
+
+
+def test_tuples_are_read_as_lists() -> None:
+    assert as_read({"a": (1, (2.5, "x")), "b": {"c": ()}}) == {"a": [1, [2.5, "x"]], "b": {"c": []}}

@@ -1,0 +1,119 @@
+"""Writing: a reader sees the old file or the new one, and JSON has one form."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, strategies as st
+
+from evoframe import RunError
+from evoframe.files.reading import parsed_json, read_text
+from evoframe.files.writing import is_leftover, json_text, remove, write_atomically, write_json
+
+json_values = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
+    max_leaves=8,
+)
+
+
+@given(document=json_values)
+def test_json_is_read_back_as_it_was_written(tmp_path_factory: pytest.TempPathFactory, document: Any) -> None:
+    path = tmp_path_factory.getbasetemp() / "document.json"
+    write_json(path, document)
+    again = parsed_json(read_text(path, 1))
+    assert again == document
+    assert json_text(again) == json_text(document) == path.read_text().removesuffix("\n")
+
+
+def cyclic() -> list[Any]:
+    values: list[Any] = []
+    values.append(values)
+    return values
+
+
+@pytest.mark.parametrize(
+    ("document", "error"),
+    [
+        ({1, 2}, TypeError),
+        (float("nan"), ValueError),
+        ([float("inf")], ValueError),
+        (cyclic(), RecursionError),
+    ],
+    ids=["set", "nan", "inf", "cyclic"],
+)
+def test_what_is_no_json_leaves_the_file_as_it_was(
+    tmp_path: Path, document: Any, error: type[Exception]
+) -> None:
+    path = tmp_path / "document.json"
+    write_json(path, {"old": 1})
+    with pytest.raises(error):
+        write_json(path, document)
+    assert [each.name for each in tmp_path.iterdir()] == ["document.json"]
+    assert path.read_text() == '{"old":1}\n'
+
+
+class TestAtomically:
+    def test_the_old_file_stands_until_the_new_one_is_on_the_disk(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        path = tmp_path / "file"
+        path.write_bytes(b"old")
+        seen: list[Any] = []
+
+        def look(descriptor: int) -> None:
+            [new] = [each for each in tmp_path.iterdir() if is_leftover(each)]
+            seen.append((path.read_bytes(), new.read_bytes()))
+
+        monkeypatch.setattr(os, "fsync", look)
+        write_atomically(path, b"new")
+        assert seen == [(b"old", b"new")]
+        assert (path.read_bytes(), len(list(tmp_path.iterdir()))) == (b"new", 1)
+
+    def test_a_disk_that_is_full_leaves_the_old_file_and_nothing_else(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def full(descriptor: int) -> None:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+        path = tmp_path / "file"
+        path.write_bytes(b"old")
+        monkeypatch.setattr(os, "fsync", full)
+        with pytest.raises(RunError, match=r"file: cannot be written: No space left on device$"):
+            write_atomically(path, b"new")
+        assert (path.read_bytes(), len(list(tmp_path.iterdir()))) == (b"old", 1)
+
+    def test_where_there_is_no_directory_nothing_is_made(self, tmp_path: Path) -> None:
+        with pytest.raises(RunError, match=r"file: cannot be written: No such file"):
+            write_atomically(tmp_path / "missing" / "file", b"new")
+        assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "left"),
+    [(".run.db.new", True), ("run.db.new", False), (".run.db", False), ("run.db", False)],
+)
+def test_what_a_kill_has_left_is_known_by_its_name(name: str, left: bool) -> None:
+    assert is_leftover(Path("somewhere") / name) == left
+
+
+class TestRemoving:
+    def test_is_done_when_the_file_is_gone(self, tmp_path: Path) -> None:
+        path = tmp_path / "file"
+        path.touch()
+        remove(path)
+        remove(path)
+        assert not path.exists()
+
+    def test_what_is_no_file_is_an_error(self, tmp_path: Path) -> None:
+        (tmp_path / "folder").mkdir()
+        with pytest.raises(RunError, match=r"folder: cannot be removed: "):
+            remove(tmp_path / "folder")

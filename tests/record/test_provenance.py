@@ -1,0 +1,62 @@
+"""What a run was made with: the same each time, in words that a file can hold."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Mapping
+
+import attrs
+import numpy as np
+import toys
+
+import evoframe
+from evoframe import Chosen, RunConfig, Source
+from evoframe.documents.trees import as_read, differences
+from evoframe.record.provenance import provenance_of
+
+Load = Callable[..., RunConfig]
+
+
+@attrs.frozen
+class Telling(toys.Product):
+    """Names its library."""
+
+    version: str = "1.2"
+
+    def provenance(self) -> Mapping[str, str]:
+        return {"libtoy": self.version}
+
+
+def simulated_by(config: RunConfig, simulator: toys.Product, version: str = "1.0") -> RunConfig:
+    return attrs.evolve(
+        config, simulator=Chosen("toy-telling", simulator, Source("toy-box", version, "toys"))
+    )
+
+
+def test_names_the_versions_and_where_each_component_is_from(toy_config: Load) -> None:
+    found = provenance_of(toy_config())
+    assert found["evoframe"] == evoframe.__version__
+    assert found["machine"] == platform.machine()
+    assert found["libraries"] == {"python": platform.python_version(), "numpy": np.__version__}
+    assert found["components"] == dict.fromkeys(
+        [key for key, _ in toy_config().components()], "'toys' of toy-box 1.0"
+    )
+
+
+def test_is_the_same_each_time_and_when_it_was_read(toy_config: Load) -> None:
+    found = provenance_of(toy_config())
+    assert provenance_of(toy_config()) == found == as_read(found)
+
+
+def test_has_what_components_add(toy_config: Load) -> None:
+    config = simulated_by(toy_config(), Telling())
+    assert provenance_of(config)["libraries"]["libtoy"] == "1.2"
+
+
+def test_another_version_of_a_plugin_or_of_its_library_is_a_difference(toy_config: Load) -> None:
+    then = provenance_of(simulated_by(toy_config(), Telling()))
+    now = provenance_of(simulated_by(toy_config(), Telling(version="1.3"), "2.0"))
+    assert differences(then, now) == [
+        "libraries.libtoy: '1.2' then, '1.3' now",
+        "components.simulator: \"'toys' of toy-box 1.0\" then, \"'toys' of toy-box 2.0\" now",
+    ]

@@ -1,0 +1,192 @@
+"""Runs that are read back: opened once, read when asked, and whole when they are handed on."""
+
+from __future__ import annotations
+
+import contextlib
+import sqlite3
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from turns import CONFIG, begun
+
+from evoframe import BestPair, Design, InputError, Run, RunConfig, Turn, Workload, load_run, open_run, run
+from evoframe.files.locks import acquire_lock
+from evoframe.record.run import open_unchecked
+from evoframe.record.store import Store
+
+Load = Callable[..., RunConfig]
+
+
+class TestRefusal:
+    def test_what_is_no_run_is_refused(self, tmp_path: Path) -> None:
+        with pytest.raises(InputError, match="is no run's directory"):
+            load_run(tmp_path)
+        (tmp_path / "config.toml").write_text("[run]")
+        with pytest.raises(InputError, match=r"extends: .* is complete; expected false, found nothing"):
+            load_run(tmp_path)
+        (tmp_path / "config.toml").write_text("extends = false")
+        with pytest.raises(InputError, match=r"run\.db: there is no such file"):
+            load_run(tmp_path)
+        (tmp_path / "run.db").write_text(
+            "this is no database, but it is long enough to be taken for one" * 10
+        )
+        with pytest.raises(InputError, match="file is not a database"):
+            load_run(tmp_path)
+
+    def test_another_format_is_refused(self, toy_config: Load, tmp_path: Path) -> None:
+        finished = run(toy_config(), out=tmp_path / "run")
+        with contextlib.closing(sqlite3.connect(finished.directory / "run.db")) as database, database:
+            database.execute("UPDATE meta SET value = '99' WHERE key = 'format'")
+        with pytest.raises(InputError, match="has the format '99', but this evoframe reads format 2"):
+            load_run(finished.directory)
+
+
+def turn(index: int, score: float | None = None) -> Turn:
+    best = None if score is None else BestPair(index, score, {}, {}, Design({}))
+    return Turn(index, (), (), best, Workload(1, 1, 0.25))
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    """A run that goes on: one turn is saved."""
+    store = begun(tmp_path / "run")
+    store.save(turn(0), {"loop": {"turn": 0}})
+    yield store
+    store.close()
+
+
+@pytest.fixture
+def left(store: Store) -> Path:
+    """The directory of a run that was left after its first turn."""
+    store.close()
+    return store.directory
+
+
+class TestOpened:
+    def test_has_what_was_read_after_it_was_closed_and_nothing_else(self, left: Path) -> None:
+        with open_run(left) as opened:
+            assert opened.last_turn() == 0
+        assert opened.workload() == [{"turn": 0, "pairs": 1, "simulations": 1, "seconds": 0.25}]
+        with pytest.raises(ValueError, match=r"this run was closed; read it within"):
+            opened.pairs()
+
+    def test_has_everything_after_it_was_closed_where_all_was_read(self, left: Path) -> None:
+        with open_run(left) as opened:
+            opened.read_all()
+        assert (opened.pairs(), opened.state(), opened.summary()) == ([], {"loop": {"turn": 0}}, {})
+        assert opened.configuration() == CONFIG
+        assert not opened.finished()
+
+    def test_is_closed_by_an_error_too(self, left: Path) -> None:
+        with pytest.raises(ZeroDivisionError), open_run(left) as opened:
+            raise ZeroDivisionError
+        with pytest.raises(ValueError, match="was closed"):
+            opened.turns()
+
+    def test_is_of_one_moment_until_it_is_looked_at_again(self, store: Store) -> None:
+        with open_run(store.directory) as opened:
+            assert not opened.outdated()
+            store.save(turn(1), {"loop": {"turn": 1}})
+            assert opened.outdated()
+            assert opened.last_turn() == 1  # nobody had asked before
+
+    def test_lets_others_write_when_it_is_closed(self, left: Path) -> None:
+        with open_run(left) as opened:
+            opened.read_all()
+            opened.close()
+            Store.open(left, {}, acquire_lock(left)).close()
+
+    def test_equals_another_of_the_same_directory_and_configuration(self, left: Path) -> None:
+        assert load_run(left) == load_run(left)
+        with open_run(left) as opened:
+            assert opened == load_run(left)
+
+
+class TestEarlyKill:
+    """Before anything was saved."""
+
+    @pytest.fixture(params=["missing", "empty"])
+    def nothing(self, left: Path, request: pytest.FixtureRequest) -> Path:
+        (left / "run.db").unlink()
+        if request.param == "empty":
+            (left / "run.db").touch()
+        return left
+
+    def test_leaves_a_run_that_has_not_begun(self, nothing: Path) -> None:
+        with open_run(nothing) as opened:
+            assert not opened.begun
+            assert not opened.outdated()
+
+    def test_leaves_nothing_to_read(self, nothing: Path) -> None:
+        with pytest.raises(InputError):
+            load_run(nothing)
+
+    def test_may_be_followed_by_another_process(self, left: Path) -> None:
+        (left / "run.db").unlink()
+        with open_run(left) as opened:
+            store = Store.open(left, {}, acquire_lock(left))
+            assert opened.outdated()
+            store.close()
+
+
+class TestChampion:
+    def test_is_missing_before_the_first_pair_with_a_score(self, left: Path) -> None:
+        opened = load_run(left)
+        assert opened.champion_document() is None
+        assert opened.champion_is_written()  # as far as there is one
+        with pytest.raises(InputError, match=r"run\.db: has no pair with a score yet"):
+            opened.champion()
+
+    def test_is_the_latest(self, store: Store) -> None:
+        for index, score in ((1, 1.5), (2, 2.5)):
+            store.save(turn(index, score), {"loop": {}})
+        store.close()
+        assert load_run(store.directory).champion().score == 2.5
+
+    @pytest.mark.parametrize("content", [None, b"", b"{}\n"])
+    def test_is_written_only_if_its_file_says_the_same(self, store: Store, content: bytes | None) -> None:
+        store.save(turn(1, 1.5), {"loop": {}})
+        store.close()
+        assert load_run(store.directory).champion_is_written()
+        path = store.directory / "champion.json"
+        path.unlink()
+        if content is not None:
+            path.write_bytes(content)
+        assert not load_run(store.directory).champion_is_written()
+
+
+class TestDirectory:
+    def test_with_a_journal_of_another_program_is_refused(self, left: Path) -> None:
+        (left / "run.db-journal").touch()
+        with pytest.raises(InputError, match=r"run\.db-journal: .*another program"):
+            load_run(left)
+
+    def test_with_a_link_is_refused(self, left: Path, tmp_path: Path) -> None:
+        (left / "notes").symlink_to(tmp_path)
+        with pytest.raises(InputError, match="notes: is a link"):
+            load_run(left)
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            ('extends = "paper"', r"extends: .*; expected false, found 'paper'"),
+            ("extends = false\nprovenance = 3", "provenance: expected a table, found 3"),
+            ("extends = ", "not valid TOML"),
+        ],
+    )
+    def test_with_another_configuration_is_refused(self, left: Path, text: str, message: str) -> None:
+        (left / "config.toml").write_text(text)
+        with pytest.raises(InputError, match=rf"config\.toml: {message}"), open_run(left):
+            pass
+
+    def test_whose_database_nobody_has_looked_at_says_so_when_it_is_looked_at(self, left: Path) -> None:
+        (left / "run.db").write_bytes(b"no database" * 100)
+        with open_unchecked(left) as opened:
+            with pytest.raises(InputError, match="file is not a database"):
+                opened.check()
+            assert not opened.begun
+
+    def test_is_that_of_a_run_however_it_is_named(self, left: Path) -> None:
+        assert load_run(str(left)) == load_run(left)
+        assert isinstance(load_run(left), Run)

@@ -1,0 +1,68 @@
+"""Robustness from Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import toys
+
+from evoframe import ConfigurationError, Plugins, RunConfig, load_run, measure_robustness, run
+from evoframe.robustness.api import measurable, measure, setting_of
+from evoframe.robustness.candidates import Candidates, read_candidates
+
+
+class TestFromPython:
+    def test_runs_and_paths_are_measured(self, toy_plugins: Plugins, two_runs: list[str]) -> None:
+        found = measure_robustness(load_run(Path("run-1")), "run-2", controllers=5, plugins=toy_plugins)
+        assert [body.label for body in found.setting.bodies] == two_runs
+        assert found.scores.shape == (5, 2)
+        assert found.setting.simulation["simulator"]["name"] == "toy-steered"
+        louder = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins, simulator={"gain": 2.0})
+        assert (louder.scores == 2 * found.scores).all()
+
+    @pytest.mark.parametrize(("controllers", "seed"), [(0, 1), (1, -1)])
+    def test_what_cannot_be_drawn_is_refused(
+        self, toy_plugins: Plugins, two_runs: list[str], controllers: int, seed: int
+    ) -> None:
+        with pytest.raises(ConfigurationError, match=r"^expected 1 or more controllers and a seed from 0 up"):
+            measure_robustness("run-1", plugins=toy_plugins, controllers=controllers, seed=seed)
+
+
+@pytest.fixture
+def candidates(toy_plugins: Plugins, two_runs: list[str]) -> Candidates:
+    return read_candidates([Path(name) for name in two_runs], None, [], toy_plugins, published=True)
+
+
+def test_a_setting_says_what_will_be_measured_before_it_is(candidates: Candidates) -> None:
+    setting = setting_of(candidates, 3, 7)
+    assert (setting.seed, setting.controllers, setting.unit) == (3, 7, "")
+    assert [body.label for body in setting.bodies] == ["run-1", "run-2", "one", "two"]
+    assert setting.simulation == candidates.config.simulation()
+    assert measure(candidates, setting).setting == setting
+
+
+def test_a_measurement_is_the_same_each_time_and_its_workers_are_let_go(candidates: Candidates) -> None:
+    before = len(toys.CLOSED)
+    setting = setting_of(candidates, 3, 7)
+    first, second = measure(candidates, setting), measure(candidates, setting)
+    assert np.array_equal(first.scores, second.scores, equal_nan=True)
+    assert len(toys.CLOSED) == before + 2
+
+
+class TestMeasurable:
+    def test_are_champions_with_their_digests(
+        self, toy_plugins: Plugins, two_runs: list[str], candidates: Candidates
+    ) -> None:
+        found = [each for name in two_runs for each in measurable(Path(name), toy_plugins)]
+        bodies = setting_of(candidates, 1, 1).bodies
+        assert [each.digest for each in found] == [body.digest for body in bodies[:2]]
+        assert found[0].simulation == candidates.config.simulation()
+
+    def test_is_nothing_whose_simulator_draws_no_controllers(
+        self, here: Path, toy_plugins: Plugins, toy_config: Callable[..., RunConfig]
+    ) -> None:
+        run(toy_config(), out="plain")
+        assert [*measurable(Path("plain"), toy_plugins)] == []

@@ -1,0 +1,169 @@
+"""A run is opened once and handed on: nothing is parsed, opened or checked again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click.testing
+import pytest
+import toys
+from counting import TABLES, Reads, counted
+
+from evoframe import Plugins, RunConfig, discover, load_config, load_run, resume, run, verify
+from evoframe.cli import cli
+from evoframe.runs.doctor import check_run
+from evoframe.runs.starting import prepare
+from evoframe.study.gathered import gather
+from evoframe.study.plan import Planned, Study
+from evoframe.study.progress import Status, status
+
+Start = Callable[[Path], Any]
+
+
+@pytest.fixture(scope="module")
+def plugins() -> Plugins:
+    """Those that the program has with ``-p``: another source of the toys would be another version."""
+    return discover([toys.__file__])
+
+
+@pytest.fixture
+def config(toy_file: Path, plugins: Plugins) -> RunConfig:
+    return load_config(toy_file, overrides=["simulator=toy-varied"], plugins=plugins)
+
+
+@pytest.fixture
+def left(config: RunConfig, tmp_path: Path) -> Path:
+    """A run that was interrupted after some turns."""
+    asked = iter([False, False, False, True])
+    prepare(config, Plugins(), tmp_path / "run").play(lambda: next(asked))
+    return tmp_path / "run"
+
+
+@pytest.fixture
+def finished(config: RunConfig, tmp_path: Path) -> Path:
+    return run(config, out=tmp_path / "run").directory
+
+
+def command(*arguments: str | Path) -> None:
+    """Run the program in this process."""
+    result = click.testing.CliRunner().invoke(cli, [*map(str, arguments)], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+
+
+def resume_by_command(directory: Path, _: Plugins) -> None:
+    command("resume", "-p", toys.__file__, directory)
+
+
+def resume_from_python(directory: Path, plugins: Plugins) -> None:
+    resume(directory, plugins=plugins)
+
+
+def doctor_by_command(directory: Path, _: Plugins) -> None:
+    command("doctor", "-p", toys.__file__, directory)
+
+
+def doctor_from_python(directory: Path, plugins: Plugins) -> None:
+    assert {check.state for check in check_run(directory, plugins)} == {"ok"}
+
+
+def verify_by_command(directory: Path, _: Plugins) -> None:
+    command("verify", "-p", toys.__file__, directory)
+
+
+def verify_from_python(directory: Path, plugins: Plugins) -> None:
+    verify(directory, plugins=plugins)
+
+
+@pytest.mark.parametrize("go_on", [resume_from_python, resume_by_command])
+def test_a_run_that_goes_on_is_read_once_and_opened_once_more_to_write(
+    left: Path, plugins: Plugins, monkeypatch: pytest.MonkeyPatch, go_on: Callable[[Path, Plugins], None]
+) -> None:
+    reads = counted(left, monkeypatch)
+    go_on(left, plugins)
+    monkeypatch.undo()
+    assert load_run(left).finished()
+    assert (reads.parsed, reads.opened) == (1, 2)
+    assert_every_table_was_checked_once(reads, TABLES - {"resumes"})  # which was empty
+
+
+@pytest.mark.parametrize("go_on", [resume_from_python, resume_by_command])
+@pytest.mark.parametrize("verified", [True, False])
+def test_a_finished_run_that_shall_go_on_is_read_once(
+    finished: Path,
+    plugins: Plugins,
+    monkeypatch: pytest.MonkeyPatch,
+    go_on: Callable[[Path, Plugins], None],
+    verified: bool,
+) -> None:
+    if not verified:
+        (finished / "verification.json").unlink()
+    reads = counted(finished, monkeypatch)
+    go_on(finished, plugins)
+    assert (finished / "verification.json").exists()
+    assert (reads.parsed, reads.opened) == (1, 1)
+    assert set(reads.checked.values()) == {1}
+
+
+@pytest.mark.parametrize("look", [doctor_from_python, doctor_by_command])
+@pytest.mark.parametrize("which", ["left", "finished"])
+def test_a_run_that_is_looked_at_is_read_once(
+    request: pytest.FixtureRequest,
+    plugins: Plugins,
+    monkeypatch: pytest.MonkeyPatch,
+    look: Callable[[Path, Plugins], None],
+    which: str,
+) -> None:
+    directory: Path = request.getfixturevalue(which)
+    reads = counted(directory, monkeypatch)
+    look(directory, plugins)
+    assert (reads.parsed, reads.opened) == (1, 1)
+    assert_every_table_was_checked_once(reads, TABLES - {"resumes"})
+
+
+@pytest.mark.parametrize("again", [verify_from_python, verify_by_command])
+def test_a_run_that_is_verified_is_read_once(
+    finished: Path, plugins: Plugins, monkeypatch: pytest.MonkeyPatch, again: Callable[[Path, Plugins], None]
+) -> None:
+    reads = counted(finished, monkeypatch)
+    again(finished, plugins)
+    assert (reads.parsed, reads.opened) == (1, 1)
+    assert_every_table_was_checked_once(reads, {"best_pairs"})  # nothing else is asked for
+
+
+def test_a_run_that_is_loaded_is_read_once(finished: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    reads = counted(finished, monkeypatch)
+    loaded = load_run(finished)
+    for ask in (loaded.pairs, loaded.pairs, loaded.champion, loaded.summary, loaded.state, loaded.turns):
+        ask()
+    assert (reads.parsed, reads.opened) == (1, 1)
+    assert_every_table_was_checked_once(reads, TABLES - {"resumes"})
+
+
+def test_a_run_that_was_just_played_is_not_read_at_all(
+    config: RunConfig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    execution = prepare(config, Plugins(), tmp_path / "run")
+    reads = counted(tmp_path / "run", monkeypatch)
+    played = execution.play()
+    execution.verify(played)
+    assert played.champion().score == max(pair["score"] for pair in played.pairs())
+    assert reads == Reads()
+
+
+def test_a_run_of_a_study_is_read_once_for_how_far_it_is_and_once_for_its_row(
+    made: tuple[Study, Path, list[Planned]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned = made[2][1]
+    reads = counted(planned.directory, monkeypatch)
+    assert status(planned) == Status("finished")
+    assert (reads.parsed, reads.opened, set(reads.checked.values())) == (1, 1, {1})
+    monkeypatch.undo()
+    reads = counted(planned.directory, monkeypatch)
+    gather({planned: Status("finished")}, {})
+    assert (reads.parsed, reads.opened, set(reads.checked.values())) == (1, 1, {1})
+
+
+def assert_every_table_was_checked_once(reads: Reads, tables: frozenset[str] | set[str]) -> None:
+    assert dict(reads.checked) == dict.fromkeys(tables, 1)
