@@ -2,7 +2,6 @@
 
 from ._version import __version__ as __version__
 from .analysis.api import load_study as load_study, report as report
-from .analysis.report import Report as Report
 from .analysis.statistics import Correction as Correction
 from .config.layers import Layer as Layer
 from .config.resolve import load_config as load_config
@@ -84,7 +83,7 @@ from .evolution.evaluation import Evaluator as Evaluator
 from .evolution.population import Population as Population
 from .messages import suggestion as suggestion
 from .record.champion import Champion as Champion
-from .record.run import Run as Run, load_run as load_run, open_run as open_run
+from .record.run import Report as Report, Run as Run, load_run as load_run, open_run as open_run
 from .record.verification import Finding as Finding, Verification as Verification
 from .registry.discovery import discover as discover
 from .registry.hookspecs import hookimpl as hookimpl

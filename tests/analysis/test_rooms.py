@@ -12,7 +12,7 @@ from processes import python
 
 from evoframe import analysis
 
-ROOMS = [module.name for module in pkgutil.iter_modules(analysis.__path__)]
+ROOMS = [module.name for module in pkgutil.iter_modules(analysis.__path__) if module.ispkg]
 
 
 @pytest.mark.parametrize("name", ROOMS)
@@ -34,7 +34,7 @@ def test_no_module_has_the_name_of_what_its_room_offers(name: str) -> None:
 
 @pytest.mark.parametrize("module", ["evoframe.analysis", "evoframe.analysis.statistics"])
 def test_what_is_not_there_is_no_attribute(module: str) -> None:
-    with pytest.raises(AttributeError, match=f"module '{module}' has no attribute 'nothing'"):
+    with pytest.raises(AttributeError, match="nothing"):
         importlib.import_module(module).nothing  # noqa: B018 - it is asked for
 
 

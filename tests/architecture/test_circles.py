@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 from house import CORE, PACKAGES, circles, parts, uses
 
-UPWARD: Mapping[tuple[str, str], str] = {
-    ("evoframe.record.run", "evoframe"): "Run.report() looks for the public report() when it is called",
-}
-"""Imports that make circles, and why each is there; best would be none."""
-
-WHOLE = {package.name: uses(package) for package in PACKAGES}
-GRAPHS = {
-    name: {module: used - {end for start, end in UPWARD if start == module} for module, used in graph.items()}
-    for name, graph in WHOLE.items()
-}
+GRAPHS = {package.name: uses(package) for package in PACKAGES}
 INNER = [
     (name, package)
     for name, graph in GRAPHS.items()
@@ -34,13 +24,6 @@ def test_no_modules_import_each_other(name: str) -> None:
 def test_no_parts_of_a_package_import_each_other(name: str, package: str) -> None:
     """Rooms of the core too: what stands in one may not need another that needs it."""
     assert circles(parts(GRAPHS[name], package)) == []
-
-
-@pytest.mark.parametrize(("start", "end"), UPWARD)
-def test_an_import_that_goes_up_is_still_there_and_still_makes_a_circle(start: str, end: str) -> None:
-    graph = WHOLE[start.partition(".")[0]]
-    assert end in graph[start]
-    assert any({start, end} <= set(circle) for circle in circles(graph))
 
 
 class TestCircles:

@@ -97,9 +97,8 @@ UNUSUAL: Mapping[str, Unusual] = {
     "importlib": Unusual(
         "loads rooms and commands of our own on demand, and plugins that a person installed or named",
         {
-            "src/evoframe/analysis/__init__.py",
-            "src/evoframe/analysis/statistics/__init__.py",
             "src/evoframe/cli/program.py",
+            "src/evoframe/record/run.py",
             "src/evoframe/registry/discovery.py",
         },
     ),

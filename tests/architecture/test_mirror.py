@@ -25,7 +25,6 @@ UNTESTED: Mapping[str, str] = {
     "src/evoframe/__main__.py": "starts the program: all tests of the command line come through it",
     "src/evoframe/_version.py": "a number",
     "src/evoframe/testing/laws.py": "what contracts share; the tests of all contracts go through it",
-    "plugins/executors/evoframe_executors/options.py": "validators; tests of all executors go through them",
 }
 """Modules without tests of their own, and why."""
 

@@ -14,33 +14,6 @@ All of it needs the extra ``report``. Importing this package loads none of its l
 room does.
 """
 
-from __future__ import annotations
+import lazy_loader
 
-import importlib
-from types import ModuleType
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from evoframe.analysis import data, figures, output, page, report, robustness, statistics
-    from evoframe.analysis.figures import bodies, networks
-
-__all__ = [
-    "bodies",
-    "data",
-    "figures",
-    "networks",
-    "output",
-    "page",
-    "report",
-    "robustness",
-    "statistics",
-]
-
-_MODULES = {"bodies": "figures.bodies", "networks": "figures.networks"}
-
-if not TYPE_CHECKING:  # to a type checker a name that is not there is an error
-
-    def __getattr__(name: str) -> ModuleType:
-        if name not in __all__:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        return importlib.import_module(f"{__name__}.{_MODULES.get(name, name)}")
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -28,20 +28,33 @@ def differences(
         now: The other.
         words: What the lines call them.
     """
-    before, after = dict(leaves(then)), dict(leaves(now))
+    before, after = dict(_leaves(then, ())), dict(_leaves(now, ()))
     keys = [*before, *(key for key in after if key not in before)]
-    missing = "nothing"
     return [
-        f"{key}: {before.get(key, missing)!r} {words[0]}, {after.get(key, missing)!r} {words[1]}"
+        f"{'.'.join(key)}: {before.get(key, _NOTHING)!r} {words[0]}, {after.get(key, _NOTHING)!r} {words[1]}"
         for key in keys
-        if before.get(key, missing) != after.get(key, missing)
+        if before.get(key, _NOTHING) != after.get(key, _NOTHING)
     ]
 
 
-def leaves(tree: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
-    """Return the dotted key and the value of each leaf of a tree of tables."""
+def leaves(tree: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the dotted key and the value of each leaf of a tree of tables."""
+    return ((".".join(path), value) for path, value in _leaves(tree, ()))
+
+
+class _Nothing:
+    """Stands for a value that is not there, and equals none that is."""
+
+    def __repr__(self) -> str:
+        return "'nothing'"
+
+
+_NOTHING = _Nothing()
+
+
+def _leaves(tree: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
     if isinstance(tree, Mapping) and (tree or not path):
         for key, value in tree.items():
-            yield from leaves(value, (*path, str(key)))
+            yield from _leaves(value, (*path, str(key)))
     else:
-        yield ".".join(path), tree
+        yield path, tree

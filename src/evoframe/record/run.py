@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import attrs
 
-import evoframe
 from evoframe.errors import InputError
 from evoframe.files import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text, refuse_links
 from evoframe.record.champion import Champion, champion_from_json
@@ -18,9 +18,24 @@ from evoframe.record.database import Database, Table
 from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, DATABASE_FILE, VERIFICATION_FILE
 from evoframe.record.verification import Verification, verification_from_json
 
-__all__ = ["Run", "load_run", "open_run"]
+__all__ = ["Report", "Run", "load_run", "open_run", "open_unchecked"]
 
 _SETTLED = ("format", "configuration")  # keys of meta that stand there from the beginning
+
+
+@attrs.frozen
+class Report:
+    """A report that was written.
+
+    Attributes:
+        directory: Where it is.
+        words: Its conclusions, as ``conclusions.txt`` has them.
+        files: All its files.
+    """
+
+    directory: Path
+    words: str
+    files: tuple[Path, ...]
 
 
 @attrs.define
@@ -141,11 +156,13 @@ class Run:
             raise InputError(f"{path}: is about another champion; {again}")
         return verification
 
-    def report(
-        self, out: str | Path | None = None, *, correction: evoframe.Correction = "holm"
-    ) -> evoframe.Report:
+    def report(self, out: str | Path | None = None, *, correction: str = "holm") -> Report:
         """Write the report of this run: see :func:`evoframe.report`."""
-        return evoframe.report(self, out=out, correction=correction)
+        public = importlib.import_module(
+            "evoframe"
+        )  # reports stand above the record: looked up when asked for
+        report: Report = public.report(self, out=out, correction=correction)
+        return report
 
     def check(self) -> None:
         """Look at the form of the database, before anything in it is read; :func:`open_run` has done so.

@@ -58,6 +58,7 @@ class Store:
     _checksums: Checksums = attrs.field(factory=Checksums, init=False)
     _changed: list[tuple[str, str]] = attrs.field(factory=list, init=False)
     last_turn: int = attrs.field(default=-1, init=False)
+    _broken: bool = attrs.field(default=False, init=False)
     _unwritten: tuple[Mapping[str, Any], Design] | None = attrs.field(default=None, init=False)
     _synced: float = attrs.field(factory=time.monotonic, init=False)
 
@@ -209,6 +210,8 @@ class Store:
 
     def _replace(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
         """Put rows in place of those with the same keys."""
+        if not rows:
+            return
         self._write("INSERT OR REPLACE", table, rows)
         self._keep(table, rows)
         self._changed += [Checksums.of_row(table, row) for row in rows]
@@ -225,12 +228,16 @@ class Store:
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
+        if self._broken:  # what is kept in memory is not what was saved
+            raise RunError(f"{self.directory}: nothing more can be saved after a failure")
         with self._writing():
+            self._broken = True
             try:
                 self._database.execute("BEGIN IMMEDIATE")
                 yield
                 self._write("INSERT OR REPLACE", "checksums", self._changed)
                 self._database.execute("COMMIT")
+                self._broken = False
             finally:
                 self._changed.clear()
                 if self._database.in_transaction:

@@ -1,6 +1,6 @@
 """Robustness: the same random controllers for every body."""
 
-from evoframe.robustness.api import Measurable, measurable, measure, measure_robustness, setting_of
+from evoframe.robustness.api import measurable, measure, measure_robustness, setting_of
 from evoframe.robustness.candidates import read_candidates
 from evoframe.robustness.files import (
     SETTING_FILE,
@@ -15,7 +15,6 @@ __all__ = [
     "SETTING_FILE",
     "Body",
     "Divergence",
-    "Measurable",
     "Robustness",
     "Setting",
     "document_of",

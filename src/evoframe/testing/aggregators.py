@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.contract.protocols import Aggregator
-from evoframe.contract.values import Scores
+from evoframe.contract import Aggregator, Scores
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import accepted, at_most, for_all, refusal, same_bits
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import attrs
 import pytest
 
-from evoframe.documents.structuring import structure, unstructure
+from evoframe.documents import structure, unstructure
 
 __all__ = ["ComponentContract"]
 

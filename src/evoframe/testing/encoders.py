@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.contract.optional import SupportsInputNames, SupportsOutputNames
-from evoframe.contract.protocols import Encoder, Network
-from evoframe.contract.values import Design
+from evoframe.contract import Design, Encoder, Network, SupportsInputNames, SupportsOutputNames
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, random_network, same_arrays
 

@@ -15,9 +15,7 @@ import pytest
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from evoframe.contract.drawings import NetworkGraph
-from evoframe.contract.optional import SupportsGraph
-from evoframe.contract.protocols import Evolver, EvolverRun
+from evoframe.contract import Evolver, EvolverRun, NetworkGraph, SupportsGraph
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, global_random_state_untouched, refusal, same_bits
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from evoframe.contract.protocols import Executor, ExecutorRun
+from evoframe.contract import Executor, ExecutorRun
 from evoframe.testing.components import ComponentContract
 
 __all__ = ["ExecutorContract"]

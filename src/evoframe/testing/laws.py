@@ -13,9 +13,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import SearchStrategy
 
-from evoframe.contract.drawings import GeometryPart
-from evoframe.contract.protocols import Network
-from evoframe.contract.values import Outcome
+from evoframe.contract import GeometryPart, Network, Outcome
 from evoframe.errors import ConfigurationError
 
 __all__ = [

@@ -7,8 +7,7 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.contract.protocols import Objective
-from evoframe.contract.values import Outcome, Record
+from evoframe.contract import Objective, Outcome, Record
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, same_outcome
 

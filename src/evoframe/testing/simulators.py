@@ -10,8 +10,13 @@ import attrs
 import numpy as np
 import pytest
 
-from evoframe.contract.drawings import Geometry
-from evoframe.contract.optional import (
+from evoframe.contract import (
+    Design,
+    Export,
+    Geometry,
+    Outcome,
+    Record,
+    Simulator,
     SupportsExport,
     SupportsGeometry,
     SupportsPublished,
@@ -19,10 +24,8 @@ from evoframe.contract.optional import (
     SupportsVariants,
     Variant,
 )
-from evoframe.contract.protocols import Simulator
-from evoframe.contract.values import Design, Export, Outcome, Record
 from evoframe.errors import ConfigurationError
-from evoframe.record.verification import UNCHANGED
+from evoframe.record import UNCHANGED
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import assert_is_mesh, same_arrays, same_outcome
 

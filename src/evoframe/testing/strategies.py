@@ -9,8 +9,7 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from evoframe.contract.protocols import CollaborationStrategy
-from evoframe.contract.values import Member
+from evoframe.contract import CollaborationStrategy, Member
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import accepted, for_all, global_random_state_untouched, refusal
 

@@ -7,21 +7,21 @@ from collections.abc import Iterator
 import attrs
 
 from evoframe.analysis.data.geometries import checked
-from evoframe.contract.blame import blaming
-from evoframe.contract.config import RunConfig
-from evoframe.contract.drawings import Geometry, NetworkGraph
-from evoframe.contract.optional import (
+from evoframe.contract import (
+    Geometry,
+    NetworkGraph,
+    RunConfig,
     SupportsGeometry,
     SupportsGraph,
     SupportsInputNames,
     SupportsOutputNames,
+    blaming,
     unit_of,
 )
-from evoframe.designs.sources import naming, read_job
+from evoframe.designs import naming, read_job
 from evoframe.errors import InputError
-from evoframe.record.run import Run
-from evoframe.record.verification import Verification
-from evoframe.registry.registry import Plugins
+from evoframe.record import Run, Verification
+from evoframe.registry import Plugins
 
 __all__ = ["ChampionData", "DrawnNetwork", "load_champion"]
 

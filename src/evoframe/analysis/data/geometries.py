@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.colors import is_color_like
 
-from evoframe.contract.drawings import Geometry, GeometryPart
+from evoframe.contract import Geometry, GeometryPart
 
 __all__ = ["checked"]
 

@@ -10,12 +10,11 @@ import attrs
 import pandas as pd
 
 from evoframe.analysis.statistics.groups import ranked
-from evoframe.contract.optional import unit_of
-from evoframe.documents.trees import differences
+from evoframe.contract import unit_of
+from evoframe.documents import differences
 from evoframe.errors import InputError
-from evoframe.files.reading import LARGEST_DOCUMENT, is_file, read_text, shown_name
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import Plugins
+from evoframe.files import LARGEST_DOCUMENT, is_file, read_text, shown_name
+from evoframe.registry import Plugins, discover
 from evoframe.study.conduct import STUDY_FILE, survey
 from evoframe.study.gathered import gather, imported_rows
 from evoframe.study.names import called, headings, title_of

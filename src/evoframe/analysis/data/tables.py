@@ -11,8 +11,8 @@ import pandas as pd
 from evoframe.analysis.data.studies import YARDSTICKS, StudyData, View, Yardstick
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.groups import Comparison, Group, compare, ranked
-from evoframe.documents.trees import leaves
-from evoframe.record.verification import Verification
+from evoframe.documents import leaves
+from evoframe.record import Verification
 
 __all__ = [
     "Compared",

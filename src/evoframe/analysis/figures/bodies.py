@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLUMN
-from evoframe.contract.drawings import Geometry, GeometryPart
+from evoframe.contract import Geometry, GeometryPart
 
 __all__ = ["body"]
 

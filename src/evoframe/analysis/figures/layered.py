@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
-from evoframe.contract.drawings import NetworkGraph, NetworkLink
+from evoframe.contract import NetworkGraph, NetworkLink
 
 __all__ = ["Layout", "effective", "layered"]
 

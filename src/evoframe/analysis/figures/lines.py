@@ -10,7 +10,7 @@ from scipy import stats
 from evoframe.analysis.data.studies import View, Yardstick
 from evoframe.analysis.data.units import NAMES, factor_of
 from evoframe.analysis.statistics.groups import FEWEST
-from evoframe.record.run import Run
+from evoframe.record import Run
 from evoframe.study.rows import score_curve
 
 __all__ = ["Line", "lines_of_run", "lines_of_view"]

@@ -16,7 +16,7 @@ from matplotlib.path import Path
 from evoframe.analysis.figures.layered import Layout, effective, layered
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import BOTH_COLUMNS, COLOURS, COLUMN, text_width
-from evoframe.contract.drawings import NetworkGraph, NetworkLink
+from evoframe.contract import NetworkGraph, NetworkLink
 
 __all__ = ["TooLargeError", "network"]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from evoframe.analysis.output.writing import write_files
 from evoframe.errors import InputError, RunError
-from evoframe.files.reading import LARGEST_DOCUMENT, is_file, read_text
+from evoframe.files import LARGEST_DOCUMENT, is_file, read_text
 
 __all__ = ["LIST_FILE", "listed", "settle"]
 

@@ -13,7 +13,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from evoframe.errors import InputError
-from evoframe.files.writing import write_atomically
+from evoframe.files import write_atomically
 
 __all__ = ["figure_files", "prepare_directory", "table_files", "write_files"]
 

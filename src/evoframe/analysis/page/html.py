@@ -22,7 +22,7 @@ from plotly.offline import get_plotlyjs
 
 from evoframe._version import __version__
 from evoframe.analysis.output.names import slugs
-from evoframe.contract.drawings import Geometry
+from evoframe.contract import Geometry
 
 __all__ = [
     "Block",

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import attrs
-
 from evoframe.analysis.data.studies import load_study
 from evoframe.analysis.output.listing import listed, settle
 from evoframe.analysis.output.writing import prepare_directory, write_files
@@ -14,30 +12,13 @@ from evoframe.analysis.report.run_report import draft_of_run
 from evoframe.analysis.report.study_report import draft_of_study
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.errors import InputError
-from evoframe.files.reading import is_file
-from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.run import Run, open_run
-from evoframe.registry.discovery import discover
-from evoframe.registry.registry import Plugins
-from evoframe.robustness.files import SETTING_FILE
+from evoframe.files import is_file
+from evoframe.record import CONFIG_FILE, Report, Run, open_run
+from evoframe.registry import Plugins, discover
+from evoframe.robustness import SETTING_FILE
 from evoframe.study.conduct import STUDY_FILE
 
 __all__ = ["Report", "report"]
-
-
-@attrs.frozen
-class Report:
-    """A report that was written.
-
-    Attributes:
-        directory: The directory that it was written to.
-        words: Its conclusions, or the state of the run.
-        files: All its files.
-    """
-
-    directory: Path
-    words: str
-    files: tuple[Path, ...]
 
 
 def report(

@@ -16,10 +16,9 @@ from evoframe.analysis.report.champion_report import champion_part
 from evoframe.analysis.report.draft import Draft
 from evoframe.analysis.robustness.section import robustness_part
 from evoframe.analysis.statistics.corrections import Correction
-from evoframe.files.reading import LARGEST_DOCUMENT, read_text, shown_name
-from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.run import Run
-from evoframe.registry.registry import Plugins
+from evoframe.files import LARGEST_DOCUMENT, read_text, shown_name
+from evoframe.record import CONFIG_FILE, Run
+from evoframe.registry import Plugins
 
 __all__ = ["draft_of_run"]
 

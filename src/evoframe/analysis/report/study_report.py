@@ -31,8 +31,8 @@ from evoframe.analysis.robustness.section import robustness_part
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.words import conclusion
 from evoframe.errors import InputError
-from evoframe.record.run import open_run
-from evoframe.registry.registry import Plugins
+from evoframe.record import open_run
+from evoframe.registry import Plugins
 from evoframe.study.conduct import STUDY_FILE
 
 __all__ = ["draft_of_study"]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from evoframe.analysis.data.units import factor_of
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, broken, row_height
-from evoframe.robustness.measurement import Robustness
+from evoframe.robustness import Robustness
 
 __all__ = ["violins"]
 

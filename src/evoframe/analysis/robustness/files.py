@@ -13,7 +13,7 @@ from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.robustness.files import document_of, write_measurement
+from evoframe.robustness import document_of, write_measurement
 
 __all__ = ["as_json", "records", "write_findings", "write_robustness"]
 

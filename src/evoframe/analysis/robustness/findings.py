@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from evoframe.analysis.statistics.blocks import BlockComparison, compare_blocks
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.groups import Comparison, compare
-from evoframe.robustness.measurement import Robustness
+from evoframe.robustness import Robustness
 
 __all__ = ["Findings", "find"]
 

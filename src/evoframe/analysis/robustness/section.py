@@ -10,10 +10,9 @@ from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.findings import find
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.analysis.statistics.corrections import Correction
-from evoframe.files.reading import is_file, shown_name
-from evoframe.registry.registry import Plugins
-from evoframe.robustness.api import measurable
-from evoframe.robustness.files import SETTING_FILE, read_robustness
+from evoframe.files import is_file, shown_name
+from evoframe.registry import Plugins
+from evoframe.robustness import SETTING_FILE, measurable, read_robustness
 
 __all__ = ["robustness_part"]
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from evoframe.analysis.robustness.findings import Findings
-from evoframe.robustness.measurement import Robustness
+from evoframe.robustness import Robustness
 
 __all__ = ["bodies_table", "groups_table", "pairs_table", "ranking_table"]
 
