@@ -4,16 +4,19 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
+PARALLEL := --numprocesses auto --dist worksteal
 SOURCES := pyproject.toml setup.py extensions.py $(wildcard lib*/*.c lib*/*.h lib*/*.py lib*/include/*.h)
 
-.PHONY: run test lint types imports unit browser sanitize fuzz clean
+LOWEST := $(VENV)-lowest
+
+.PHONY: run test lint types imports unit lowest browser sanitize fuzz clean
 
 ## run: the published experiment
 run: $(VENV)/installed
 	$(BIN)/evoframe run
 
 ## test: everything that CI checks
-test: lint types imports unit browser sanitize fuzz
+test: lint types imports unit lowest browser sanitize fuzz
 
 ## lint: style of the Python code
 lint: $(VENV)/developing
@@ -30,7 +33,11 @@ imports: $(VENV)/developing
 
 ## unit: the tests, on all cores
 unit: $(VENV)/developing
-	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
+	$(BIN)/python -m pytest $(PARALLEL)
+
+## lowest: the tests, with the lowest version of each dependency that pyproject.toml allows
+lowest: $(LOWEST)/developing
+	$(LOWEST)/bin/python -m pytest -W ignore::DeprecationWarning $(PARALLEL) # old releases use what newer ones deprecate
 
 ## browser: the pages of reports, in Chromium
 browser: $(VENV)/developing
@@ -45,7 +52,7 @@ fuzz: $(VENV)/fuzzing
 	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
+	rm -rf $(VENV) $(LOWEST) build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -57,6 +64,14 @@ $(VENV)/installed: $(BIN)/python $(SOURCES)
 
 $(VENV)/developing: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --group dev
+	touch $@
+
+# Without isolation, so that the C libraries are built with the lowest versions too.
+$(LOWEST)/developing: $(VENV)/developing
+	$(BIN)/uv venv --quiet --clear --python $(BIN)/python $(LOWEST)
+	$(BIN)/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct \
+		--requirements pyproject.toml --all-extras --group tests
+	$(BIN)/uv pip install --quiet --python $(LOWEST) --no-deps --no-build-isolation --editable .
 	touch $@
 
 $(VENV)/fuzzing: $(VENV)/developing
