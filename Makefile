@@ -8,8 +8,9 @@ PARALLEL := --numprocesses auto --dist worksteal
 SOURCES := pyproject.toml setup.py extensions.py $(wildcard lib*/*.c lib*/*.h lib*/*.py lib*/include/*.h)
 
 LOWEST := $(VENV)-lowest
+LONG   := interpreters
 
-.PHONY: run test lint types imports unit lowest browser sanitize fuzz clean
+.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters clean
 
 ## run: the published experiment
 run: $(VENV)/installed
@@ -17,6 +18,10 @@ run: $(VENV)/installed
 
 ## test: everything that CI checks
 test: lint types imports unit lowest browser sanitize fuzz
+	@echo "not run: make long ($(LONG))"
+
+## long: evidence that takes too long for every change
+long: $(LONG)
 
 ## lint: style of the Python code
 lint: $(VENV)/developing
@@ -46,6 +51,10 @@ browser: $(VENV)/developing
 ## sanitize: the C libraries and their tests under the address and undefined-behaviour sanitizers
 sanitize: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/sanitize.sh
+
+## interpreters: the tests, with each other Python that is installed
+interpreters: $(VENV)/developing
+	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
 
 ## fuzz: SECONDS of inputs that nobody would write, for libvox, the reader of VXA files and that of configurations
 fuzz: $(VENV)/fuzzing
