@@ -36,9 +36,12 @@ types: $(VENV)/developing
 imports: $(VENV)/developing
 	$(BIN)/lint-imports
 
-## unit: the tests, on all cores
+## unit: the tests, on all cores, with the coverage of the code
 unit: $(VENV)/developing
-	$(BIN)/python -m pytest $(PARALLEL)
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest $(PARALLEL)
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
 
 ## lowest: the tests, with the lowest version of each dependency that pyproject.toml allows
 lowest: $(LOWEST)/developing
@@ -61,7 +64,7 @@ fuzz: $(VENV)/fuzzing
 	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
 
 clean:
-	rm -rf $(VENV) $(LOWEST) build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
+	rm -rf $(VENV) $(LOWEST) .coverage .coverage.* build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
