@@ -6,15 +6,23 @@ BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
 C := $(filter-out $(wildcard lib*/evoframe_*/*.c),$(wildcard lib*/*.[ch] lib*/*/*.[ch])) # but for cffi's
 SOURCES := pyproject.toml setup.py extensions.py $(C) $(wildcard lib*/*/*.py)
+PARALLEL := --numprocesses auto --dist worksteal
 
-.PHONY: run test lint types imports unit browser sanitize fuzz clean
+LOWEST := $(VENV)-lowest
+LONG   := interpreters
+
+.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters clean
 
 ## run: the published experiment
 run: $(VENV)/installed
 	$(BIN)/evoframe run
 
 ## test: everything that CI checks
-test: lint types imports unit browser sanitize fuzz
+test: lint types imports unit lowest browser sanitize fuzz
+	@echo "not run: make long ($(LONG))"
+
+## long: evidence that takes too long for every change
+long: $(LONG)
 
 ## lint: style of the Python and the C code
 lint: $(VENV)/developing
@@ -30,9 +38,16 @@ types: $(VENV)/developing
 imports: $(VENV)/developing
 	$(BIN)/lint-imports
 
-## unit: the tests, on all cores
+## unit: the tests, on all cores, with the coverage of the code
 unit: $(VENV)/developing
-	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest $(PARALLEL)
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
+
+## lowest: the tests, with the lowest version of each dependency that pyproject.toml allows
+lowest: $(LOWEST)/developing
+	$(LOWEST)/bin/python -m pytest -W ignore::DeprecationWarning $(PARALLEL) # old releases use what newer ones deprecate
 
 ## browser: the pages of reports, in Chromium
 browser: $(VENV)/developing
@@ -42,12 +57,16 @@ browser: $(VENV)/developing
 sanitize: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/sanitize.sh
 
+## interpreters: the tests, with each other Python that is installed
+interpreters: $(VENV)/developing
+	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
+
 ## fuzz: SECONDS of inputs that nobody would write, for libvox, the reader of VXA files and that of configurations
 fuzz: $(VENV)/fuzzing
 	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
+	rm -rf $(VENV) $(LOWEST) .coverage .coverage.* build dist *.egg-info $(wildcard lib*/evoframe_lib*/_*.c lib*/evoframe_lib*/_*.so)
 
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
@@ -59,6 +78,14 @@ $(VENV)/installed: $(BIN)/python $(SOURCES)
 
 $(VENV)/developing: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --group dev
+	touch $@
+
+# Without isolation, so that the C libraries are built with the lowest versions too.
+$(LOWEST)/developing: $(VENV)/developing
+	$(BIN)/uv venv --quiet --clear --python $(BIN)/python $(LOWEST)
+	$(BIN)/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct \
+		--requirements pyproject.toml --all-extras --group tests
+	$(BIN)/uv pip install --quiet --python $(LOWEST) --no-deps --no-build-isolation --editable .
 	touch $@
 
 $(VENV)/fuzzing: $(VENV)/developing
