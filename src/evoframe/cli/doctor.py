@@ -12,8 +12,8 @@ from rich.text import Text
 
 from evoframe.cli.context import common_options, output, plugins_of
 from evoframe.errors import InputError
-from evoframe.registry.registry import Plugins
-from evoframe.runs.doctor import Check, State, check_installation, check_run
+from evoframe.registry import Plugins
+from evoframe.runs import Check, State, check_installation, check_run
 
 __all__ = ["doctor"]
 
