@@ -22,8 +22,8 @@ def toy(tmp_path: Path) -> list[str]:
     return ["-p", toys.__file__]
 
 
-def undisturbed(evoframe: Evoframe, toy: list[str], directory: Path) -> Path:
-    assert evoframe("run", *toy, "toy.toml", *_SLOW, "--out", "undisturbed").returncode == 0
+def undisturbed(evoframe: Evoframe, toy: list[str], directory: Path, pace: tuple[str, ...] = _SLOW) -> Path:
+    assert evoframe("run", *toy, "toy.toml", *pace, "--out", "undisturbed").returncode == 0
     return directory / "undisturbed"
 
 
@@ -47,7 +47,11 @@ def test_goes_on_after_a_signal_that_stopped_it_after_its_turn(
 def test_a_second_process_is_refused_and_the_first_goes_on(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:
-    with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOW, "--out", "left") as process:
+    slower = (
+        "--set",
+        "simulator={name='toy-slow', delay=0.15}",
+    )  # a busy machine starts a process in seconds
+    with started(tmp_path, "run", *toy, "-v", "toy.toml", *slower, "--out", "left") as process:
         told(process, "turn 0: a pair with the score")
         second = evoframe("resume", *toy, "left")
         assert second.returncode == 2
@@ -55,7 +59,7 @@ def test_a_second_process_is_refused_and_the_first_goes_on(
             "Error: left: is being written by another process; wait until it has ended, or end it"
         )
         assert process.wait(60) == 0
-    assert_same_result(undisturbed(evoframe, toy, tmp_path), tmp_path / "left")
+    assert_same_result(undisturbed(evoframe, toy, tmp_path, slower), tmp_path / "left")
 
 
 def test_a_finished_run_is_said_to_be_finished(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
@@ -138,7 +142,7 @@ def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
 def test_a_second_signal_does_not_wait_for_what_hangs(toy: list[str], tmp_path: Path) -> None:
     hanging = [
         "--set",
-        "simulator={name='toy-hanging', beyond=-1.0}",
+        "simulator={name='toy-hanging', beyond=-1.0, mended='mended'}",
         "--set",
         "executor={name='threads', workers=2}",
     ]
