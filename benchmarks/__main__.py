@@ -20,6 +20,7 @@ from benchmarks.sections.kernels import kernels
 from benchmarks.sections.networks import networks
 from benchmarks.sections.roofline import roofline
 from benchmarks.sections.runs import runs
+from benchmarks.sections.startup import startup
 from benchmarks.sections.threads import threads
 from benchmarks.timing import FULL, QUICK, Effort
 
@@ -30,6 +31,7 @@ SECTIONS: dict[str, Callable[[Effort], Section]] = {
     "networks": networks,
     "evolution": evolution,
     "runs": runs,
+    "startup": startup,
     "roofline": roofline,
 }
 _WIDTH = 132  # where nobody knows how wide the output is

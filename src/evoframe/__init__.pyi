@@ -97,6 +97,12 @@ from .robustness.measurement import (
 )
 from .runs.resuming import resume as resume
 from .runs.starting import run as run
+from .study.api import (
+    StudyPlan as StudyPlan,
+    StudyResult as StudyResult,
+    plan_study as plan_study,
+    run_study as run_study,
+)
 from .workers.cores import available_cores as available_cores
 from .workers.processes import WorkerProcesses as WorkerProcesses
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
-from house import AWAITED, CORE, PLUGIN_PACKAGES, ROOT
+from house import CORE, PLUGIN_PACKAGES, ROOT
 
 TESTS = ROOT / "tests"
 
@@ -74,16 +74,10 @@ def filled(folder: Path) -> Iterator[str]:
 MIRRORED = {str(path.relative_to(ROOT)): tests for path, tests in mirrored()}
 
 
-def is_awaited(tests: Path) -> bool:
-    return tests.relative_to(TESTS).parts[0] in AWAITED
-
-
 @pytest.mark.parametrize("module", MIRRORED)
 def test_every_module_has_its_tests(module: str) -> None:
     tests = ROOT / ELSEWHERE[module] if module in ELSEWHERE else MIRRORED[module]
-    assert tests.is_file() or module in UNTESTED or is_awaited(tests), (
-        f"{module} needs {tests.relative_to(ROOT)}"
-    )
+    assert tests.is_file() or module in UNTESTED, f"{module} needs {tests.relative_to(ROOT)}"
 
 
 @pytest.mark.parametrize("module", [*ELSEWHERE, *UNTESTED])

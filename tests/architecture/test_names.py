@@ -6,7 +6,7 @@ import ast
 from pathlib import Path
 
 import pytest
-from house import AWAITED, CORE, PLUGIN_PACKAGES, ROOT
+from house import CORE, PLUGIN_PACKAGES, ROOT
 
 import evoframe
 
@@ -14,7 +14,6 @@ INITS = [
     path
     for package in (CORE, *PLUGIN_PACKAGES)
     for path in sorted(package.rglob("__init__.py"))
-    if path.relative_to(package).parts[0] not in AWAITED
 ]
 
 

@@ -140,7 +140,7 @@ def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
 def test_a_second_signal_does_not_wait_for_what_hangs(toy: list[str], tmp_path: Path) -> None:
     hanging = [
         "--set",
-        "simulator={name='toy-hanging', beyond=-1.0}",
+        "simulator={name='toy-hanging', beyond=-1.0, mended='mended'}",
         "--set",
         "executor={name='threads', workers=2}",
     ]

@@ -199,7 +199,7 @@ class TestRefused:
 def test_measuring_from_python_needs_no_statistics(tmp_path: Path) -> None:
     program = (
         "import sys; sys.modules['matplotlib'] = sys.modules['pandas'] = None; import evoframe; "
-        "print(evoframe.robustness(published=True, controllers=2).scores.shape)"
+        "print(evoframe.measure_robustness(published=True, controllers=2).scores.shape)"
     )
     assert python("-c", program, directory=tmp_path).stdout == "(2, 3)\n"
 

@@ -118,11 +118,11 @@ class TestFileWithItsOwnSettings:
         return functools.partial(evoframe, *command, "--set", "simulator=toy-varied")
 
     def test_is_simulated_with_them(self, simulate: Evoframe) -> None:
-        assert json.loads(simulate("--json").stdout)["displacement"] == [8.0]
+        assert json.loads(simulate("--json").stdout)["score"] == [8.0]
 
     def test_is_simulated_with_what_is_set_all_the_same(self, simulate: Evoframe) -> None:
         result = json.loads(simulate("--json", "--set", "simulator.gain=3").stdout)
-        assert result["displacement"] == [6.0]
+        assert result["score"] == [6.0]
 
     def test_is_named_when_one_of_them_is_wrong(self, simulate: Evoframe, tmp_path: Path) -> None:
         path = tmp_path / "one.toy"
@@ -138,10 +138,56 @@ def test_a_trace_of_several_bodies_is_refused(evoframe: Evoframe, tmp_path: Path
     assert "--trace writes the trace of one body, but 36 were given" in refused.stderr
 
 
+WITH_UNITS = """
+import attrs, toys
+from evoframe import hookimpl
+
+@attrs.frozen
+class Energy(toys.Value):
+    unit = "J"
+
+@attrs.frozen
+class Length(toys.Value):
+    unit = "m"
+
+@hookimpl
+def evoframe_objectives():
+    return {"energy": Energy, "length": Length}
+"""
+
+
+def test_json_has_an_entry_for_each_design_of_all_files(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    (tmp_path / "units.py").write_text(WITH_UNITS)
+    (tmp_path / "two.toy").write_text("designs = [{ a = 2.0 }, { a = 3.0 }]\n")
+    (tmp_path / "one.toy").write_text("designs = [{ a = 4.0 }]\n")
+    command = ["simulate", "-p", toys.__file__, "-p", "units.py", "two.toy", "one.toy", "--json"]
+    command += ["--preset", "toy.toml", "--set", "simulator=toy-varied"]
+    surroundings = {"PYTHONPATH": str(Path(toys.__file__).parent)}
+    lengths = json.loads(evoframe(*command, "--set", "objective=length", **surroundings).stdout)
+    assert lengths == {
+        "labels": ["two.toy[0]", "two.toy[1]", "one.toy[0]"],
+        "score": [2.0, 3.0, 4.0],
+        "objective": ["length"] * 3,
+        "unit": ["m"] * 3,
+        "diverged": [False] * 3,
+        "diverged_at": [None] * 3,
+        "displacement": [2.0, 3.0, 4.0],
+    }
+    energies = json.loads(evoframe(*command, "--set", "objective=energy", **surroundings).stdout)
+    del lengths["displacement"]
+    assert energies == {**lengths, "objective": ["energy"] * 3, "unit": ["J"] * 3}
+    command.remove("--json")
+    header, first, *_ = evoframe(*command, "--set", "objective=energy", **surroundings).stdout.splitlines()
+    assert header.split() == ["body", "score"]
+    assert first.split() == ["two.toy[0]", "2.0", "J"]
+
+
 def test_a_simulation_that_diverges_is_said_to(evoframe: Evoframe, one_body: Path) -> None:
     wild = ["--set", "simulator.bond_damping=1e4"]
     result = json.loads(evoframe("simulate", one_body, "--json", *wild).stdout)
-    assert result == {"displacement": [None], "diverged": [True], "diverged_at": [ANY]}
+    assert result["displacement"] == result["score"] == [None]
+    assert (result["diverged"], result["diverged_at"]) == ([True], [ANY])
     assert result["diverged_at"][0] > 0
     assert "diverged at step" in evoframe("simulate", one_body, *wild).stdout
 

@@ -17,7 +17,7 @@ from evoframe.runs.doctor import check_run
 from evoframe.runs.starting import prepare
 from evoframe.study.gathered import gather
 from evoframe.study.plan import Planned, Study
-from evoframe.study.progress import Status, status
+from evoframe.study.progress import status_of
 
 Start = Callable[[Path], Any]
 
@@ -152,17 +152,18 @@ def test_a_run_that_was_just_played_is_not_read_at_all(
     assert reads == Reads()
 
 
-def test_a_run_of_a_study_is_read_once_for_how_far_it_is_and_once_for_its_row(
-    made: tuple[Study, Path, list[Planned]], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("with_row", [False, True])
+def test_a_run_of_a_study_is_read_once_for_how_far_it_is_and_for_its_row(
+    made: tuple[Study, Path, list[Planned]], monkeypatch: pytest.MonkeyPatch, with_row: bool
 ) -> None:
     planned = made[2][1]
     reads = counted(planned.directory, monkeypatch)
-    assert status(planned) == Status("finished")
-    assert (reads.parsed, reads.opened, set(reads.checked.values())) == (1, 1, {1})
-    monkeypatch.undo()
-    reads = counted(planned.directory, monkeypatch)
-    gather({planned: Status("finished")}, {})
-    assert (reads.parsed, reads.opened, set(reads.checked.values())) == (1, 1, {1})
+    status = status_of(planned, with_row=with_row)
+    assert (status.state, status.row is not None) == ("finished", with_row)
+    assert gather({planned: status}, {})[planned].run == planned.index
+    reads_of_row = 1 if with_row else 2  # one that was not asked for is read by whoever gathers
+    assert (reads.parsed, reads.opened) == (reads_of_row, reads_of_row)
+    assert max(reads.checked.values()) <= reads_of_row
 
 
 def assert_every_table_was_checked_once(reads: Reads, tables: frozenset[str] | set[str]) -> None:

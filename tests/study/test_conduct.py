@@ -10,10 +10,15 @@ import attrs
 import pytest
 
 from evoframe import InputError
-from evoframe.study.conduct import STUDY_FILE, _Conduct, alone, claim, refuse_another, survey
+from evoframe.messages import full_text
+from evoframe.record import open_run
+from evoframe.record.database import Database, Table
+from evoframe.study import gathered, progress
+from evoframe.study.conduct import STUDY_FILE, Watcher, claim, execute, lock_tables, refuse_another, survey
+from evoframe.study.gathered import gather
 from evoframe.study.plan import Planned, Study
 from evoframe.study.pool import End, News, Pool
-from evoframe.study.progress import Status, note_failure, status
+from evoframe.study.progress import REMEDY, Status, note_failure, status_of
 from evoframe.study.worker import Order
 
 Read = Callable[..., Study]
@@ -24,7 +29,7 @@ def test_what_another_process_leaves_before_it_has_claimed_a_directory_is_no_obs
 ) -> None:
     there = tmp_path / "there"
     there.mkdir()
-    with alone(there):
+    with lock_tables(there):
         (there / f".{STUDY_FILE}.new").write_text("half")
         refuse_another(toy_study(), there)
     claim(toy_study(), there)
@@ -81,7 +86,8 @@ def test_a_study_is_not_made_smaller(
 class Workers(Pool):
     """In place of a pool: each run ends as soon as it is asked how the study goes on."""
 
-    def __init__(self, ends: Mapping[int, End]) -> None:
+    def __init__(self, workers: int, ends: Mapping[int, End]) -> None:
+        self.workers = workers
         self.ends = ends
         self.started: list[Order] = []
         self.at_once = 0
@@ -109,25 +115,22 @@ class Workers(Pool):
 
 
 @attrs.define
-class Notes:
-    """Notes what a watcher is told."""
+class Notes(Watcher):
+    """Notes what a watcher receives."""
 
     made: list[tuple[str, Planned]] = attrs.field(factory=list)
     ends: list[End] = attrs.field(factory=list)
 
-    def began(self, planned: Planned) -> None:
+    def on_run_started(self, planned: Planned) -> None:
         self.made.append(("began", planned))
 
-    def told(self, planned: Planned, turn: int, best: float | None) -> None:
+    def on_turn_finished(self, planned: Planned, turn: int, best: float | None) -> None:
         assert (turn, best) == (1, 2.5)
         self.made.append(("told", planned))
 
-    def ended(self, planned: Planned, end: End) -> None:
+    def on_run_ended(self, planned: Planned, end: End) -> None:
         self.made.append(("ended", planned))
         self.ends.append(end)
-
-    def looked(self) -> None:
-        pass
 
 
 @pytest.fixture
@@ -141,8 +144,8 @@ def orders(toy_study: Read, tmp_path: Path) -> dict[Planned, Order]:
 
 class TestWork:
     def test_is_done_in_order_by_so_many_workers(self, orders: dict[Planned, Order]) -> None:
-        workers, notes = Workers({}), Notes()
-        _Conduct(orders, 2, notes, workers).work(lambda: False)
+        workers, notes = Workers(2, {}), Notes()
+        execute(orders, workers, notes, lambda: False)
         assert workers.started == list(orders.values())
         assert workers.at_once == 2
         assert [run for what, run in notes.made if what == "began"] == list(orders)
@@ -154,16 +157,16 @@ class TestWork:
     def test_that_failed_is_noted_and_the_others_go_on(self, orders: dict[Planned, Order]) -> None:
         first, *others = orders
         note_failure(others[0].directory, "a fault of yesterday")
-        workers, notes = Workers({0: End("failed", "a fault")}), Notes()
-        _Conduct(orders, 2, notes, workers).work(lambda: False)
-        assert status(first) == Status("failed", "a fault")
+        workers, notes = Workers(2, {0: End("failed", "a fault")}), Notes()
+        execute(orders, workers, notes, lambda: False)
+        assert status_of(first) == Status("failed", "a fault")
         assert len(workers.started) == 4
-        assert {status(run).state for run in others} == {"missing"}
+        assert {status_of(run).state for run in others} == {"missing"}
 
     def test_stops_after_what_is_running(self, orders: dict[Planned, Order]) -> None:
-        workers, notes = Workers({}), Notes()
+        workers, notes = Workers(1, {}), Notes()
         asked = iter([False, True, True, True])
-        _Conduct(orders, 1, notes, workers).work(lambda: next(asked))
+        execute(orders, workers, notes, lambda: next(asked))
         assert workers.stopping
         assert len(workers.started) == 1
         assert notes.ends == [End("stopped")]
@@ -172,5 +175,35 @@ class TestWork:
 def test_a_damaged_run_says_what_to_do(made: tuple[Study, Path, list[Planned]]) -> None:
     study, directory, planned = made
     (planned[2].directory / "run.db").write_bytes(b"x" * 4096)
-    with pytest.raises(InputError, match=r"run\.db: .*; a run whose directory is removed is made again"):
+    with pytest.raises(InputError, match=r"run\.db: ") as caught:
         survey(study, directory)
+    assert full_text(caught.value).endswith(f"\n  {REMEDY}")
+
+
+def test_a_finished_run_is_opened_once_for_its_status_and_its_row(
+    made: tuple[Study, Path, list[Planned]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, directory, planned = made
+    opened: list[Path] = []
+    tables: list[str] = []
+    read = Database.read
+
+    def noted(directory: Path) -> object:
+        opened.append(directory)
+        return open_run(directory)
+
+    def noted_table(database: Database, name: str) -> Table:
+        tables.append(name)
+        return read(database, name)
+
+    monkeypatch.setattr(progress, "open_run", noted)
+    monkeypatch.setattr(gathered, "open_run", noted)
+    monkeypatch.setattr(Database, "read", noted_table)
+    statuses = survey(study, directory, rows=True)
+    rows = gather(statuses, {})
+    assert opened == [run.directory for run in planned]
+    assert set(tables).isdisjoint({"individuals", "pairs"})  # the large ones
+    assert list(rows) == planned
+    assert gather(survey(study, directory), {}) == rows
+    assert survey(study, directory, known=statuses) == statuses
+    assert len(opened) == 3 * len(planned)

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import attrs
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 
-from evoframe import InputError, load_run, run
-from evoframe.study.conduct import claim, survey
-from evoframe.study.gathered import gather, import_rows, imported_rows
+from evoframe import InputError, load_run
 from evoframe.study.plan import Planned, Study
-from evoframe.study.progress import note_failure
-from evoframe.study.rows import Row, read_rows, row_of, write_rows
-
-Read = Callable[..., Study]
+from evoframe.study.rows import Row, read_rows, row_of, score_curve, write_rows
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
 
@@ -55,13 +48,6 @@ def test_rows_that_are_published_are_written_as_they_stand(tmp_path: Path, path:
         assert (tmp_path / name).read_bytes() == path.with_name(name).read_bytes()
 
 
-def kept(study: Study, directory: Path) -> list[Row]:
-    imported = imported_rows(study, directory)
-    rows = list(gather(survey(study, directory, imported), imported).values())
-    write_rows(rows, directory / "rows.csv")
-    return rows
-
-
 def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]]) -> None:
     _, _, planned = made
     finished = load_run(planned[3].directory)
@@ -77,169 +63,29 @@ def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]
     assert row.score_curve[0] == max(pair["score"] for pair in finished.pairs() if pair["turn"] == 0)
 
 
-def test_rows_of_elsewhere_count_as_finished(
-    made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
+def test_the_curve_of_scores_is_the_best_so_far_after_each_generation(
+    made: tuple[Study, Path, list[Planned]],
 ) -> None:
-    study, directory, _ = made
-    gathered = kept(study, directory)
-    there = tmp_path / "there"
-    there.mkdir()
-    import_rows(study, there, [directory / "rows.csv"])
-    again = kept(study, there)
-    assert [attrs.evolve(row, fitness_curve=(), score_curve=()) for row in again] == [
-        attrs.evolve(row, fitness_curve=(), score_curve=()) for row in gathered
-    ]
-    for row, other in zip(gathered, again, strict=True):
-        assert other.fitness_curve == pytest.approx(row.fitness_curve, rel=1e-5)
-    assert (there / "rows.csv").read_bytes() == (directory / "rows.csv").read_bytes()
-    assert (there / "curves.csv").read_bytes() == (directory / "curves.csv").read_bytes()
+    finished = load_run(made[2][0].directory)
+    pairs = [(pair["turn"], pair["score"]) for pair in finished.pairs() if pair["score"] is not None]
+    best = [max(score for turn, score in pairs if turn <= end) for end in range(0, 9, 2)]
+    assert score_curve(finished, 2) == tuple(best)
 
 
-def test_rows_of_elsewhere_stand_for_runs_that_are_not_finished_here(
+def test_rows_are_read_without_their_curves_too(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path
 ) -> None:
-    study, directory, planned = made
-    gathered = kept(study, directory)
-    there = tmp_path / "there"
-    claim(study, there)
-    failed, begun, missing, finished = study.planned(there)
-    note_failure(failed.directory, "a fault")
-    begun.directory.mkdir(parents=True)
-    shutil.copy(planned[1].directory / "config.toml", begun.directory)
-    shutil.copytree(planned[3].directory, finished.directory)
-    assert [status.state for status in survey(study, there).values()] == [
-        "failed", "begun", "missing", "finished",
-    ]  # fmt: skip
-    import_rows(study, there, [directory / "rows.csv"])
-    imported = imported_rows(study, there)
-    statuses = survey(study, there, imported)
-    assert [statuses[run].state for run in (failed, begun, missing)] == ["imported"] * 3
-    rows = gather(statuses, imported)
-    assert [row.champion for row in rows.values()] == [row.champion for row in gathered]
-    assert rows[finished] == gathered[3]  # and not with the digits of a table of curves
+    row = row_of(made[2][0], load_run(made[2][0].directory))
+    write_rows([row], tmp_path / "rows.csv")
+    (tmp_path / "curves.csv").unlink()
+    assert read_rows(tmp_path / "rows.csv") == [attrs.evolve(row, fitness_curve=(), score_curve=())]
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (("toy-product,0,", "toy-product,7,"), "run 7: is no run of this study"),
-        (("toy-product,0,", "toy-other,0,"), "is no run of this study"),
-        (("toy-product,0,", "toy-product,0,1"), "was made with another configuration or seed"),
-        (("toy-product,0,", "toy-product,zero,"), "line 2: is no row of a study"),
-        (("toy-product,0,", "toy-product,0,,"), "its lines are of different lengths"),
-        (("run,seed", "run,seeds"), "is no table of a study: it has no column seed"),
-        ((",0.1.0,", ",0.1.0,nan,"), "is no table: its lines are of different lengths"),
-    ],
-)
-def test_rows_of_something_else_are_refused(
-    made: tuple[Study, Path, list[Planned]], change: tuple[str, str], message: str
+@pytest.mark.parametrize("curve", ["a,0,score,bent", "a,zero,score,1"])
+def test_what_is_no_curve_is_refused(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path, curve: str
 ) -> None:
-    study, directory, _ = made
-    kept(study, directory)
-    path = directory / "rows.csv"
-    path.write_text(path.read_text().replace(*change))
-    with pytest.raises(InputError) as caught:
-        import_rows(study, directory, [path])
-    assert message in str(caught.value)
-
-
-def test_rows_of_cells_that_are_not_asked_for_now_are_kept(
-    made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
-) -> None:
-    study, directory, planned = made
-    kept(study, directory)
-    there = tmp_path / "there"
-    there.mkdir()
-    import_rows(study, there, [directory / "rows.csv"])
-    fewer = toy_study("runs=1", "grid.collaboration.n=[2]")
-    assert [run.index for run in imported_rows(fewer, there)] == [0, 0]
-    write_rows([row_of(planned[2], load_run(planned[2].directory))], tmp_path / "rows.csv")
-    import_rows(fewer, there, [tmp_path / "rows.csv"])
-    assert len(imported_rows(study, there)) == 4
-
-
-def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
-    study, directory, _ = made
-    rows = kept(study, directory)
-    import_rows(study, directory, [directory / "rows.csv"])
-    write_rows([attrs.evolve(rows[0], champion="other")], directory / "rows.csv")
-    with pytest.raises(InputError, match="another champion than in the rows imported before"):
-        import_rows(study, directory, [directory / "rows.csv"])
-
-
-def changed(path: Path, change: Callable[[list[str]], list[str]]) -> None:
-    path.write_text("\n".join([*change(path.read_text().splitlines()), ""]))
-
-
-def test_a_score_that_is_no_number_is_refused(made: tuple[Study, Path, list[Planned]]) -> None:
-    study, directory, _ = made
-    [row, *_] = kept(study, directory)
-    path = directory / "rows.csv"
-    path.write_text(path.read_text().replace(f",{row.score!r},", ",nan,", 1))
-    with pytest.raises(
-        InputError, match=r"rows\.csv: line 2: is no row of a study: expected a number, found nan"
-    ):
-        import_rows(study, directory, [path])
-
-
-def test_curves_that_are_cut_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
-    study, directory, _ = made
-    kept(study, directory)
-    changed(directory / "curves.csv", lambda lines: [line.rpartition(",")[0] for line in lines])
-    with pytest.raises(
-        InputError, match=r"curves\.csv: the \w+ of line \d of rows\.csv does not end as that"
-    ):
-        import_rows(study, directory, [directory / "rows.csv"])
-
-
-def test_rows_of_runs_of_different_lengths_are_read_again(toy_study: Read, tmp_path: Path) -> None:
-    study = toy_study(text='extends = "toy.toml"\nruns = 1\n[grid]\n"run.generations" = [1, 3]\n')
-    directory = tmp_path / "here"
-    for each in study.planned(directory):
-        config = each.cell.config
-        run(attrs.evolve(config, run=attrs.evolve(config.run, seed=each.seed)), out=each.directory)
-    rows = kept(study, directory)
-    assert sorted(len(row.fitness_curve) for row in rows) == [2, 4]
-    again = read_rows(directory / "rows.csv")
-    assert [len(row.score_curve) for row in again] == [len(row.score_curve) for row in rows]
-
-
-def test_curves_can_be_imported_later(made: tuple[Study, Path, list[Planned]], tmp_path: Path) -> None:
-    study, directory, _ = made
-    kept(study, directory)
-    there, curves = tmp_path / "there", directory / "curves.csv"
-    claim(study, there)
-    text = curves.read_text()
-    changed(curves, lambda lines: lines[:2])  # of one run, and of that one of two
-    import_rows(study, there, [directory / "rows.csv"])
-    lengths = [len(row.fitness_curve) for row in imported_rows(study, there).values()]
-    assert sorted(lengths) == [0, 0, 0, 5]
-    curves.write_text(text)
-    import_rows(study, there, [directory / "rows.csv"])
-    assert {len(row.fitness_curve) for row in imported_rows(study, there).values()} == {5}
-
-
-def test_a_table_that_contradicts_what_was_imported_is_refused(
-    made: tuple[Study, Path, list[Planned]], tmp_path: Path
-) -> None:
-    study, directory, _ = made
-    first, *others = kept(study, directory)
-    there = tmp_path / "there"
-    claim(study, there)
-    import_rows(study, there, [directory / "rows.csv"])
-    other = attrs.evolve(first, fittest_pair_score=first.fittest_pair_score + 1.0, seconds=9.0)
-    write_rows([other, *others], tmp_path / "rows.csv")
-    with pytest.raises(
-        InputError, match=r"run 0: another fittest_pair_score than in the rows imported before"
-    ):
-        import_rows(study, there, [tmp_path / "rows.csv"])
-
-
-@pytest.mark.parametrize("text", ["", "garbage\n", "run,seed\n"])
-def test_what_is_no_table_of_rows_is_refused(
-    made: tuple[Study, Path, list[Planned]], tmp_path: Path, text: str
-) -> None:
-    study, directory, _ = made
-    (tmp_path / "rows.csv").write_text(text)
-    with pytest.raises(InputError, match=r"rows\.csv: is no table of a study: it has no column "):
-        import_rows(study, directory, [tmp_path / "rows.csv"])
+    write_rows([row_of(made[2][0], load_run(made[2][0].directory))], tmp_path / "rows.csv")
+    (tmp_path / "curves.csv").write_text(f"aggregator,run,curve,0\n{curve}\n")
+    with pytest.raises(InputError, match=r"curves\.csv: line 2: is no curve of a study"):
+        read_rows(tmp_path / "rows.csv")

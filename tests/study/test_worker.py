@@ -11,10 +11,11 @@ import pytest
 import toys
 
 import evoframe
-from evoframe import InputError, Plugins, RunConfig, assemble, load_run
+from evoframe import Plugins, RunConfig, assemble, load_run
 from evoframe.config.resolve import resolved
-from evoframe.errors import LockedError
+from evoframe.errors import LockedError, NotEmptyError
 from evoframe.files.locks import locked
+from evoframe.messages import full_text
 from evoframe.record.layout import VERIFICATION_FILE
 from evoframe.runs.execution import Execution
 from evoframe.runs.starting import prepare
@@ -53,8 +54,11 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch, first: Callable[[RunConfig, Path]
 def test_what_is_left_of_a_damaged_run_is_not_taken_for_one(order: Order) -> None:
     order.directory.mkdir(parents=True)
     (order.directory / "champion.vxa").touch()
-    with pytest.raises(InputError, match="00: is not empty; a run whose directory is removed is made again"):
+    with pytest.raises(NotEmptyError, match="00: is not empty") as caught:
         perform(order, SILENT)
+    assert full_text(caught.value).endswith(
+        "00: is not empty\n  a run whose directory is removed is made again"
+    )
 
 
 def test_a_run_that_another_process_has_made_meanwhile_is_finished(
@@ -83,8 +87,9 @@ def test_a_run_whose_directory_another_process_has_just_locked_is_left_to_it(
     order: Order,
 ) -> None:
     order.directory.mkdir(parents=True)
-    with locked(order.directory), pytest.raises(LockedError):
+    with locked(order.directory), pytest.raises(LockedError) as caught:
         perform(order, SILENT)
+    assert full_text(caught.value) == str(caught.value)  # nothing is damaged
     assert perform(order, SILENT)
 
 

@@ -23,9 +23,6 @@ CORE = ROOT / "src" / "evoframe"
 PLUGIN_PACKAGES = sorted(path.parent for path in ROOT.glob("plugins/*/evoframe_*/__init__.py"))
 PACKAGES = [CORE, *PLUGIN_PACKAGES, *sorted(path.parent for path in ROOT.glob("lib*/evoframe_*/__init__.py"))]
 
-AWAITED = ("cli", "plugins", "study")
-"""Folders of tests whose move is under way elsewhere; empty once that is merged."""
-
 
 def modules_of(package: Path) -> dict[str, Path]:
     """Return the dotted name of each module of a package, and its file; a package is its ``__init__``."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from evoframe.cli.context import common_options, configuration_argument, plugins_of, set_option
-from evoframe.config.resolve import load_config
+from evoframe.config import load_config
 
 __all__ = ["config"]
 

@@ -16,8 +16,8 @@ from rich.console import Console
 from evoframe.errors import InputError
 
 if TYPE_CHECKING:
-    from evoframe.config.layers import Layer
-    from evoframe.registry.registry import Plugins
+    from evoframe.config import Layer
+    from evoframe.registry import Plugins
 
 __all__ = [
     "common_options",
@@ -140,7 +140,7 @@ def modules_of(ctx: click.Context) -> tuple[str, ...]:
 
 def plugins_of(ctx: click.Context) -> Plugins:
     """Return the plugins of this invocation, discovered once."""
-    from evoframe.registry.discovery import discover
+    from evoframe.registry import discover
 
     common = _common(ctx)
     if common.plugins is None:
@@ -149,7 +149,7 @@ def plugins_of(ctx: click.Context) -> Plugins:
 
 
 def _complete_preset(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    from evoframe.config.layers import preset_names
+    from evoframe.config import preset_names
 
     presets = [CompletionItem(name) for name in preset_names() if name.startswith(incomplete)]
     return [*presets, CompletionItem(incomplete, type="file")]
@@ -216,7 +216,7 @@ def needing_extra(extra: str, what: str) -> Iterator[None]:
 
 
 def _workers_layer(_: click.Context, __: click.Parameter, workers: int | None) -> list[Layer]:
-    from evoframe.config.layers import layer_of
+    from evoframe.config import layer_of
 
     return [] if workers is None else [layer_of(f"--workers {workers}", "executor.workers", workers)]
 

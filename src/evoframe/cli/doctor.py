@@ -12,8 +12,9 @@ from rich.text import Text
 
 from evoframe.cli.context import common_options, output, plugins_of
 from evoframe.errors import InputError
-from evoframe.registry.registry import Plugins
-from evoframe.runs.doctor import Check, State, check_installation, check_run
+from evoframe.messages import full_text
+from evoframe.registry import Plugins
+from evoframe.runs import Check, State, check_installation, check_run
 
 __all__ = ["doctor"]
 
@@ -63,7 +64,7 @@ def _checks(directory: Path, plugins: Plugins, refused: list[InputError]) -> lis
         return list(check_run(directory, plugins))
     except InputError as error:
         refused.append(error)
-        return [Check("directory", "problem", str(error))]
+        return [Check("directory", "problem", full_text(error))]
 
 
 def _print(name: str, checks: list[Check]) -> None:

@@ -7,12 +7,10 @@ from pathlib import Path
 import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
-from evoframe.contract.config import Chosen
-from evoframe.contract.optional import SupportsExport
-from evoframe.contract.protocols import Simulator
-from evoframe.designs.sources import Job, naming, read_job
+from evoframe.contract import Chosen, Simulator, SupportsExport
+from evoframe.designs import naming, read_job
 from evoframe.errors import ConfigurationError, InputError, RunError
-from evoframe.files.writing import write_atomically
+from evoframe.files import write_atomically
 from evoframe.messages import suggestion
 
 __all__ = ["export"]
@@ -62,7 +60,8 @@ def export(
         exported = simulator.export(job.designs[0], format_)
     for entry in exported.left_out:
         click.echo(f"Warning: left out: {entry}", err=True)
-    path = _default_path(job, format_) if out is None else out
+    default = job.path / f"champion.{format_}" if job.run else job.path.with_suffix(f".{format_}")
+    path = out or default
     if path == _STDOUT:
         click.echo(exported.data, nl=False)
     else:
@@ -79,10 +78,6 @@ def _exporting(simulator: Chosen[Simulator], format_: str) -> SupportsExport:
         hint = suggestion(format_, formats, "formats")
         raise ConfigurationError(f"the simulator '{simulator.name}' has no format '{format_}'{hint}")
     return simulator.component
-
-
-def _default_path(job: Job, format_: str) -> Path:
-    return job.path / f"champion.{format_}" if job.run else job.path.with_suffix(f".{format_}")
 
 
 def _write(path: Path, data: bytes, force: bool) -> None:

@@ -12,10 +12,9 @@ from evoframe.cli.context import is_quiet, output, scored
 from evoframe.cli.progress import Progress
 from evoframe.cli.signals import exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import SupportsVariants, unit_of
-from evoframe.record.run import Run
-from evoframe.runs.execution import Execution, verify_champion
+from evoframe.contract import RunConfig, SupportsVariants, unit_of
+from evoframe.record import Run
+from evoframe.runs import Execution, verify_champion
 
 __all__ = ["play", "show_end"]
 
@@ -28,7 +27,10 @@ def play(ctx: click.Context, execution: Execution) -> None:
     with stop_on_signals("this turn") as stop, contextlib.suppress(KeyboardInterrupt):
         run = execution.play(stop.is_asked)
     if run is None or not run.finished():
-        click.echo(_interrupted(execution), err=True)
+        last, directory = execution.last_turn, execution.directory
+        saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
+        todo = f"to go on: evoframe resume {directory}"
+        click.echo(f"Interrupted; {saved} in {directory}; {todo}", err=True)
         ctx.exit(stop.exit_code)
     show_end(ctx, execution.config, run)
 
@@ -41,7 +43,9 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
     else:
         output().print(_summary(run, unit_of(config.objective.component)))
     try:
-        _verify(config, run, quiet)
+        if not quiet and isinstance(config.simulator.component, SupportsVariants):
+            click.echo("verifying the champion", err=True)
+        verification = verify_champion(config, run)
     except KeyboardInterrupt:
         click.echo(
             f"Interrupted; the run is complete and saved in {directory}, but not verified; "
@@ -49,23 +53,10 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
             err=True,
         )
         ctx.exit(exit_code(signal.SIGINT))
-
-
-def _verify(config: RunConfig, run: Run, quiet: bool) -> None:
-    """Verify the champion, if that can be done, and show what came of it."""
-    if not quiet and isinstance(config.simulator.component, SupportsVariants):
-        click.echo("verifying the champion", err=True)
-    verification = verify_champion(config, run)
     if verification is not None and not quiet:
         console = output()
         console.print()
         console.print(verification_table(verification))
-
-
-def _interrupted(stopped: Execution) -> str:
-    last, directory = stopped.last_turn, stopped.directory
-    saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
-    return f"Interrupted; {saved} in {directory}; to go on: evoframe resume {directory}"
 
 
 def _summary(finished: Run, unit: str) -> Table:

@@ -9,7 +9,7 @@ import click
 from rich.table import Table
 
 from evoframe.cli.context import common_options, output, plugins_of
-from evoframe.registry.registry import Plugins
+from evoframe.registry import Plugins
 
 __all__ = ["plugins"]
 

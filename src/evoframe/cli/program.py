@@ -47,7 +47,7 @@ COMMANDS: Mapping[str, str] = {
     "resume": "Go on with a run that was interrupted, from its last complete turn.",
     "robustness": "Simulate bodies with the same random controllers, and compare what they score.",
     "run": "Run a coevolution: a TOML file, or a preset (without argument: paper).",
-    "simulate": "Simulate given bodies and print the displacement of each.",
+    "simulate": "Simulate given bodies and print the score of each.",
     "study": "Run a grid of configurations, each several times; go on where that was left.",
     "verify": (
         "Simulate designs again with one thing changed at a time, and print what is left of their scores."
@@ -88,7 +88,7 @@ class _Program(click.Group):
         group = click.Group("evoframe")
         if not modules_of(ctx) and not _plugins_of_others():
             return group  # the built-in plugins add no commands, and take a second to load
-        from evoframe.registry.observers import Observers  # noqa: PLC0415 - as they do
+        from evoframe.registry import Observers  # noqa: PLC0415 - as they do
 
         try:
             Observers(plugins_of(ctx).manager).tell("evoframe_commands", cli=group)

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from rich import progress
-from rich.console import Console, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from evoframe.cli.context import messages
-from evoframe.contract.config import RunConfig
-from evoframe.contract.values import Turn
-from evoframe.registry.hookspecs import hookimpl
+from evoframe.contract import RunConfig, Turn
+from evoframe.registry import hookimpl
 
-__all__ = ["Progress"]
+__all__ = ["Progress", "bar_columns"]
 
 _LINE_INTERVAL = 5.0  # s
 _BAR_INTERVAL = 0.25  # s; drawing costs as much as a simulation or two
@@ -41,7 +40,13 @@ class Progress:
             f"{config.label}, seed {config.run.seed}: {self._turns} turns into {directory}", soft_wrap=True
         )
         if self._console.is_terminal:
-            self._bar = _bar(self._console)
+            self._bar = _Bar(
+                *bar_columns("{task.description}"),
+                console=self._console,
+                transient=True,
+                refresh_per_second=1 / _BAR_INTERVAL,
+                expand=True,
+            )
             self._task = self._bar.add_task("initial meeting", total=self._turns + 1, detail="")
             self._bar.start()
 
@@ -66,7 +71,8 @@ class Progress:
     def _show(self, turn: Turn, now: float) -> None:
         done = f"turn {turn.index}/{self._turns}" if turn.reports else "closing meeting"
         if self._bar is None:
-            self._console.print(f"{done}  {self._detail(now)}  {self._left(turn.index, now)}", soft_wrap=True)
+            seconds = (now - self._started) / (turn.index + 1) * (self._turns - turn.index)
+            self._console.print(f"{done}  {self._detail(now)}  {seconds:.0f} s left", soft_wrap=True)
         else:
             self._bar.update(self._task, completed=turn.index + 1, description=done, detail=self._detail(now))
 
@@ -75,10 +81,6 @@ class Progress:
         rate = self._simulations / max(now - self._started, 1e-9)
         cached = 1 - self._simulations / self._pairs
         return f"{best}  {rate:.0f} sim/s  {cached:.0%} cached"
-
-    def _left(self, turn: int, now: float) -> str:
-        seconds = (now - self._started) / (turn + 1) * (self._turns - turn)
-        return f"{seconds:.0f} s left"
 
 
 class _Bar(progress.Progress):
@@ -89,14 +91,11 @@ class _Bar(progress.Progress):
         yield from (Text(task.fields["detail"], overflow="ellipsis", no_wrap=True) for task in self.tasks)
 
 
-def _bar(console: Console) -> _Bar:
-    return _Bar(
-        progress.TextColumn("{task.description}"),
+def bar_columns(text: str) -> Sequence[progress.ProgressColumn]:
+    """Return the columns of a bar: a *text* with the fields of the task, the bar, and the time left."""
+    return (
+        progress.TextColumn(text),
         progress.BarColumn(bar_width=None),
         progress.TimeRemainingColumn(),
         progress.TextColumn("left"),
-        console=console,
-        transient=True,
-        refresh_per_second=1 / _BAR_INTERVAL,
-        expand=True,
     )

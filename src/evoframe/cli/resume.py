@@ -8,9 +8,9 @@ import click
 
 from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
 from evoframe.cli.playing import play, show_end
-from evoframe.config.layers import Layer
-from evoframe.record.run import open_run
-from evoframe.runs.resuming import configuration_of, is_finished, reopen
+from evoframe.config import Layer
+from evoframe.record import open_run
+from evoframe.runs import configuration_of, is_finished, reopen
 
 __all__ = ["resume"]
 

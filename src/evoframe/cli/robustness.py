@@ -25,10 +25,9 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
-from evoframe.config.layers import Layer
-from evoframe.robustness.api import measure, setting_of
-from evoframe.robustness.candidates import read_candidates
-from evoframe.robustness.files import refuse_another, write_measurement
+from evoframe.cli.progress import bar_columns
+from evoframe.config import Layer
+from evoframe.robustness import measure, read_candidates, refuse_another, setting_of, write_measurement
 
 __all__ = ["robustness"]
 
@@ -99,11 +98,13 @@ def robustness(
     settings: list[str | Layer] = [*overrides, *workers]
     candidates = read_candidates(sources, preset, settings, plugins_of(ctx), published=published)
     setting = setting_of(candidates, seed, controllers)
-    directory = out or _default_directory(sources)
+    directory = out or Path("robustness")
+    if out is None and len(sources) == 1 and sources[0].is_dir():
+        directory = sources[0] / "robustness"
     refuse_another(directory, setting, force=force)
     prepare_directory(directory)  # before the time that it takes to measure
-    with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as told:
-        measured = measure(candidates, setting, told)
+    with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as on_progress:
+        measured = measure(candidates, setting, on_progress)
     written = write_measurement(measured, directory)  # before anything is concluded from it
     found = analysis.find(measured, correction)
     written += analysis.write_findings(found, directory)
@@ -116,21 +117,12 @@ def robustness(
         click.echo(f"{len(written)} files are in {directory}", err=True)
 
 
-def _default_directory(sources: tuple[Path, ...]) -> Path:
-    if len(sources) == 1 and sources[0].is_dir():
-        return sources[0] / "robustness"
-    return Path("robustness")
-
-
 @contextmanager
 def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
-    """Show on a terminal how many simulations are done; yield who is told."""
+    """Show on a terminal how many simulations are done; yield what counts more of them."""
     console = messages()
     bar = progress.Progress(
-        progress.TextColumn("{task.completed:,} of {task.total:,} simulations"),
-        progress.BarColumn(bar_width=None),
-        progress.TimeRemainingColumn(),
-        progress.TextColumn("left"),
+        *bar_columns("{task.completed:,} of {task.total:,} simulations"),
         console=console,
         transient=True,
         expand=True,
@@ -149,13 +141,10 @@ def _table(groups: list[dict[str, Any]], unit: str) -> Table:
     for heading in ("bodies", f"median {shown}".rstrip(), "quartiles", "range", "positive", "diverged"):
         table.add_column(heading, justify="right", overflow="fold")
     for row in groups:
-        table.add_row(row["group"], str(row["bodies"]), *_spread(row, factor), str(row["diverged"]))
+        figures = ["", "", "", ""]
+        if row["median"] is not None:
+            names = ("median", "first quartile", "third quartile", "least", "greatest")
+            middle, low, high, least, greatest = (f"{factor * row[name]:z.4g}" for name in names)
+            figures = [middle, f"{low} to {high}", f"{least} to {greatest}", f"{row['positive']:.1%}"]
+        table.add_row(row["group"], str(row["bodies"]), *figures, str(row["diverged"]))
     return table
-
-
-def _spread(row: dict[str, Any], factor: float) -> list[str]:
-    if row["median"] is None:
-        return ["", "", "", ""]
-    names = ("median", "first quartile", "third quartile", "least", "greatest")
-    middle, low, high, least, greatest = (f"{factor * row[name]:z.4g}" for name in names)
-    return [middle, f"{low} to {high}", f"{least} to {greatest}", f"{row['positive']:.1%}"]

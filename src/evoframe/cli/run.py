@@ -14,9 +14,8 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.playing import play
-from evoframe.config.layers import Layer, layer_of
-from evoframe.config.resolve import load_config
-from evoframe.runs.starting import prepare
+from evoframe.config import Layer, layer_of, load_config
+from evoframe.runs import prepare
 
 __all__ = ["run"]
 

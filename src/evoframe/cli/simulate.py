@@ -6,7 +6,9 @@ import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import attrs
 import click
 from rich.table import Table
 
@@ -19,13 +21,11 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
-from evoframe.config.layers import Layer
-from evoframe.contract.config import RunConfig
-from evoframe.contract.optional import unit_of
-from evoframe.contract.values import Design, Record, Score
-from evoframe.designs.sources import Job, naming, read_job
+from evoframe.config import Layer
+from evoframe.contract import Design, Record, RunConfig, Score, unit_of
+from evoframe.designs import Job, naming, read_job
 from evoframe.errors import InputError
-from evoframe.evolution.assembly import evaluator_of
+from evoframe.evolution import evaluator_of
 
 __all__ = ["simulate"]
 
@@ -41,7 +41,13 @@ Examples:
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @preset_option
 @set_option
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, with full precision.")
+@click.option(
+    "--json",
+    "as_json",
+    is_flag=True,
+    help="Print JSON with full precision: labels, score, objective, unit, diverged and diverged_at, lists "
+    "with an entry for each design; displacement repeats score where every unit is m.",
+)
 @click.option(
     "--trace",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -60,7 +66,7 @@ def simulate(
     trace: Path | None,
     workers: list[Layer],
 ) -> None:
-    """Simulate given bodies and print the displacement of each.
+    """Simulate given bodies and print the score of each.
 
     A FILE is a run's champion.json, which is simulated as in its run; or what the simulator reads: an .npz
     with material ([X,Y,Z] or [N,X,Y,Z]; codes 0 empty, 1 passive, 3 contractile) and phase_cycles of the same
@@ -69,11 +75,26 @@ def simulate(
     jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
     if trace is not None:
         _write_trace(trace, jobs)
-    scores = [_evaluate(job) for job in jobs]
+    scored_jobs = [(job, _evaluate(job)) for job in jobs]
+    bodies = [
+        _Body(label, score, job.config.objective.name, unit_of(job.config.objective.component))
+        for job, scores in scored_jobs
+        for label, score in zip(job.labels, scores, strict=True)
+    ]
     if as_json:
-        click.echo(_json([score for some in scores for score in some]))
+        click.echo(json.dumps(_document(bodies)))
     else:
-        output().print(_table(jobs, scores))
+        output().print(_table(bodies))
+
+
+@attrs.frozen
+class _Body:
+    """A design that was simulated, and how it was scored."""
+
+    label: str
+    score: Score
+    objective: str
+    unit: str
 
 
 def _evaluate(job: Job) -> list[Score]:
@@ -85,33 +106,39 @@ def _evaluate(job: Job) -> list[Score]:
         evaluator.close()
 
 
-def _json(scores: list[Score]) -> str:
-    return json.dumps(
-        {
-            "displacement": [score.value for score in scores],
-            "diverged": [score.value is None for score in scores],
-            "diverged_at": [score.diverged_at for score in scores],
-        }
-    )
+def _document(bodies: list[_Body]) -> dict[str, Any]:
+    """Return lists that are parallel, with an entry for each body."""
+    values = [body.score.value for body in bodies]
+    document = {
+        "labels": [body.label for body in bodies],
+        "score": values,
+        "objective": [body.objective for body in bodies],
+        "unit": [body.unit for body in bodies],
+        "diverged": [value is None for value in values],
+        "diverged_at": [body.score.diverged_at for body in bodies],
+    }
+    return {**document, "displacement": values} if _are_lengths(bodies) else document
 
 
-def _table(jobs: list[Job], scores: list[list[Score]]) -> Table:
+def _are_lengths(bodies: list[_Body]) -> bool:
+    return all(body.unit == "m" for body in bodies)
+
+
+def _table(bodies: list[_Body]) -> Table:
     table = Table(box=None, header_style="bold")
     table.add_column("body", overflow="fold")
-    table.add_column("displacement", overflow="fold")
-    for job, some in zip(jobs, scores, strict=True):
-        unit = unit_of(job.config.objective.component)
-        for label, score in zip(job.labels, some, strict=True):
-            step = f" at step {score.diverged_at}" if score.value is None else ""
-            table.add_row(label, scored(score.value, unit) + step)
+    table.add_column("displacement" if _are_lengths(bodies) else "score", overflow="fold")
+    for body in bodies:
+        step = f" at step {body.score.diverged_at}" if body.score.value is None else ""
+        table.add_row(body.label, scored(body.score.value, body.unit) + step)
     return table
 
 
 def _write_trace(path: Path, jobs: list[Job]) -> None:
-    bodies = [(job, design) for job in jobs for design in job.designs]
-    if len(bodies) != 1:
-        raise InputError(f"--trace writes the trace of one body, but {len(bodies)} were given")
-    [(job, design)] = bodies
+    given = [(job, design) for job in jobs for design in job.designs]
+    if len(given) != 1:
+        raise InputError(f"--trace writes the trace of one body, but {len(given)} were given")
+    [(job, design)] = given
     with naming(job.path):
         rows = list(_trace(job.config, design))
     try:

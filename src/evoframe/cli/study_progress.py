@@ -15,9 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from evoframe.cli.context import messages
-from evoframe.record.run import load_run
-from evoframe.study.plan import Cell, Planned
-from evoframe.study.pool import End
+from evoframe.study import Cell, End, Planned, Row, Study, Watcher
 
 __all__ = ["StudyProgress", "duration", "table_of_cells"]
 
@@ -35,6 +33,12 @@ class _State:
     running: int = 0
     scores: list[float] = attrs.field(factory=list)
     best: float | None = None
+
+    def add(self, score: float) -> None:
+        """Count a finished run."""
+        self.done += 1
+        self.scores.append(score)
+        self.saw(score)
 
     def saw(self, score: float | None) -> None:
         if score is not None:
@@ -89,86 +93,83 @@ class _Work:
         return ProgressBar(total=self._whole or 1, completed=self._whole - self.left)
 
 
-class StudyProgress:
-    """Watches a study.
+class StudyProgress(Watcher):
+    """Shows the progress of a study; within ``with`` on a terminal, where a table is drawn again and again.
 
     Args:
-        headings: What the table calls the keys of the grid.
-        todo: The runs that will be made.
-        finished: The runs that are finished already, with their scores.
         quiet: Whether to say only what failed.
     """
 
-    def __init__(
-        self,
-        headings: Sequence[str],
-        todo: Sequence[Planned],
-        finished: Mapping[Planned, float],
-        *,
-        quiet: bool,
-    ) -> None:
+    def __init__(self, *, quiet: bool) -> None:
         self._console = messages()
-        self._headings, self._quiet = headings, quiet
-        self._work = _Work(todo)
+        self._quiet = quiet
+        self._headings: Sequence[str] = ()
+        self._work = _Work(())
         self._cells: dict[Cell, _State] = {}
-        for planned in (*finished, *todo):
-            self._cells.setdefault(planned.cell, _State(0)).total += 1
-        for planned, score in finished.items():
-            state = self._cells[planned.cell]
-            state.done += 1
-            state.scores.append(score)
-            state.saw(score)
         self._started = time.monotonic()
         shown = self._console.is_terminal and not quiet
         self._live = Live(console=self._console, transient=True, auto_refresh=False) if shown else None
         self._drawn = 0.0
 
     def __enter__(self) -> Self:
-        if self._live is not None:
-            self._live.start()
         return self
 
     def __exit__(self, *_: object) -> None:
         if self._live is not None:
             self._live.stop()
 
-    def began(self, planned: Planned) -> None:
-        """Work on a run begins."""
+    def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
+        """Begin with what is done already."""
+        self._headings, self._work = study.headings, _Work(todo)
+        for planned in (*done, *todo):
+            self._cells.setdefault(planned.cell, _State(0)).total += 1
+        for planned, row in done.items():
+            self._cells[planned.cell].add(row.score)
+        self._started = time.monotonic()
+        if self._live is not None:
+            self._live.start()
+
+    def on_run_started(self, planned: Planned) -> None:
+        """Count a run as running."""
         self._cells[planned.cell].running += 1
 
-    def told(self, planned: Planned, turn: int, best: float | None) -> None:
-        """A run has finished a turn."""
+    def on_turn_finished(self, planned: Planned, turn: int, best: float | None) -> None:
+        """Count a turn of a run."""
         self._work.saw(planned, turn)
         self._cells[planned.cell].saw(best)
 
-    def ended(self, planned: Planned, end: End) -> None:
-        """Work on a run has ended."""
-        state, score = self._cells[planned.cell], None
+    def on_run_ended(self, planned: Planned, end: End) -> None:
+        """Count a run as what became of it; say so where there is no table."""
+        state = self._cells[planned.cell]
         state.running -= 1
         self._work.ended(planned, finished=end.state == "finished")
-        if end.state == "finished":
-            state.done += 1
-            score = load_run(planned.directory).summary()["best_pair_score"]
-            state.saw(score)
-            state.scores.append(score)
+        if end.score is not None:
+            state.add(end.score)
         elif end.state == "failed":
             state.failed += 1
         elif end.state == "elsewhere":
             state.elsewhere += 1
         if end.state == "failed" or not (self._quiet or self._live is not None):
-            self._console.print(self._line(planned, end, score), soft_wrap=True)
+            what = f"failed: {end.cause}" if end.state == "failed" else end.state
+            best = "" if end.score is None else f", best pair {end.score:.5g}"
+            self._console.print(f"{planned.label}: {what}{best}  {self._tally()}", soft_wrap=True)
 
-    def looked(self) -> None:
-        """Draw the picture anew, if there is one."""
+    def on_tick(self) -> None:
+        """Draw the table anew, if there is one."""
         now = time.monotonic()
         if self._live is not None and now - self._drawn >= _INTERVAL:
             self._drawn = now
-            self._live.update(self._picture(), refresh=True)
-
-    def _line(self, planned: Planned, end: End, score: float | None) -> str:
-        what = f"failed: {end.cause}" if end.state == "failed" else end.state
-        best = "" if score is None else f", best pair {score:.5g}"
-        return f"{planned.label}: {what}{best}  {self._tally()}"
+            table = table_of_cells(self._headings, ("done", "running", "best pair", "median"))
+            for cell, state in self._cells.items():
+                median = statistics.median(state.scores) if state.scores else None
+                table.add_row(
+                    *cell.values,
+                    f"{state.done}/{state.total}",
+                    str(state.running or ""),
+                    "" if state.best is None else f"{state.best:.5g}",
+                    "" if median is None else f"{median:.5g}",
+                )
+            self._live.update(Group(table, Text(self._tally()), self._work.bar()), refresh=True)
 
     def _tally(self) -> str:
         states = self._cells.values()
@@ -182,19 +183,6 @@ class StudyProgress:
         if elsewhere:
             parts.append(f"{elsewhere} left to others")
         return ", ".join([*parts, *self._work.times(time.monotonic() - self._started)])
-
-    def _picture(self) -> Group:
-        table = table_of_cells(self._headings, ("done", "running", "best pair", "median"))
-        for cell, state in self._cells.items():
-            median = statistics.median(state.scores) if state.scores else None
-            table.add_row(
-                *cell.values,
-                f"{state.done}/{state.total}",
-                str(state.running or ""),
-                "" if state.best is None else f"{state.best:.5g}",
-                "" if median is None else f"{median:.5g}",
-            )
-        return Group(table, Text(self._tally()), self._work.bar())
 
 
 def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:

@@ -16,11 +16,9 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
-from evoframe.config.layers import Layer
-from evoframe.contract.values import Score
-from evoframe.designs.sources import read_job
-from evoframe.designs.verifying import keep_of_job, verify_job
-from evoframe.record.verification import Finding, Verification
+from evoframe.config import Layer
+from evoframe.designs import keep_of_job, read_job, verify_job
+from evoframe.record import Finding, Verification
 
 __all__ = ["verification_table", "verify"]
 
@@ -59,16 +57,12 @@ def verify(
     if as_json:
         click.echo(json.dumps([{"body": label, **each.to_json()} for label, each in labelled]))
     else:
-        _print(labelled)
+        console = output()
+        for label, verification in labelled:
+            console.print(label, style="bold", soft_wrap=True)
+            console.print(verification_table(verification))
     for job, verifications in found:  # what cannot be kept was seen at least
         keep_of_job(job, verifications)
-
-
-def _print(labelled: list[tuple[str, Verification]]) -> None:
-    console = output()
-    for label, verification in labelled:
-        console.print(label, style="bold", soft_wrap=True)
-        console.print(verification_table(verification))
 
 
 def verification_table(verification: Verification) -> Table:
@@ -80,32 +74,24 @@ def verification_table(verification: Verification) -> Table:
     table.add_column("of unchanged", justify="right", no_wrap=True)
     for finding in verification.rows:
         share = verification.share(finding)
-        table.add_row(finding.name, _told(finding, unit), "-" if share is None else _percent(share))
+        table.add_row(finding.name, _outcome(finding, unit), "-" if share is None else f"{share:z.0%}")
     if verification.score is not None and verification.score != verification.unchanged.value:
         table.add_row("in its run", f"{_digits(verification.score)} {unit}".rstrip(), "")
     return table
 
 
-def _told(finding: Finding, unit: str) -> str:
+def _outcome(finding: Finding, unit: str) -> str:
     """Return what became of a design: its score, or the median and range of several draws."""
     values, lost = finding.values, finding.diverged_at
     parts = [] if finding.median is None else [f"{_digits(finding.median)} {unit}".rstrip()]
     if len(values) > 1:
         parts.append(f"{_digits(values[0])} to {_digits(values[-1])} in {len(values)} draws")
     if lost:
-        parts.append(_divergence(finding.scores, lost))
+        share = "" if len(finding.scores) == 1 else f"{len(lost)} of {len(finding.scores)} "
+        steps = f"step {lost[0]}" if lost[0] == lost[-1] else f"steps {lost[0]} to {lost[-1]}"
+        parts.append(f"{share}diverged at {steps}")
     return ", ".join(parts)
-
-
-def _divergence(scores: tuple[Score, ...], lost: list[int]) -> str:
-    share = "" if len(scores) == 1 else f"{len(lost)} of {len(scores)} "
-    steps = f"step {lost[0]}" if lost[0] == lost[-1] else f"steps {lost[0]} to {lost[-1]}"
-    return f"{share}diverged at {steps}"
 
 
 def _digits(value: float) -> str:
     return f"{value:z.5g}"  # z: without a negative zero
-
-
-def _percent(share: float) -> str:
-    return f"{share:z.0%}"

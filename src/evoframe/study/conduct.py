@@ -1,50 +1,57 @@
-"""A study at work: what is missing is run, by as many processes as there are cores."""
+"""The directory of a study, and the work that is done there."""
 
 from __future__ import annotations
 
 import concurrent.futures
 import contextlib
-import tomllib
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-import attrs
 import tomli_w
 
-from evoframe.documents.trees import differences
+from evoframe.documents import differences
 from evoframe.errors import InputError
-from evoframe.files.locks import locked_after_others
-from evoframe.files.reading import read_text
-from evoframe.files.writing import is_leftover, write_atomically
+from evoframe.files import (
+    LARGEST_DOCUMENT,
+    is_leftover,
+    locked_after_others,
+    parsed_toml,
+    read_text,
+    write_atomically,
+)
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
-from evoframe.study.progress import REMEDY, Status, forget_failure, note_failure, status
+from evoframe.study.progress import Status, forget_failure, note_failure, status_of, with_remedy
+from evoframe.study.rows import Row
 from evoframe.study.worker import INTERVAL, Order
 
-__all__ = ["STUDY_FILE", "Watcher", "alone", "claim", "conduct", "refuse_another", "survey"]
+__all__ = ["STUDY_FILE", "Watcher", "claim", "execute", "lock_tables", "refuse_another", "survey"]
 
 STUDY_FILE = "study.toml"
 
 _LOCK_FILE = "study.lock"
 
 
-class Watcher(Protocol):
-    """Is told how a study goes on."""
+class Watcher:
+    """Receives the progress of a study, and ignores it: override what you need."""
 
-    def began(self, planned: Planned) -> None:
-        """Work on a run begins."""
+    def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
+        """Receive what will be run or verified, and the rows of what needs no work."""
 
-    def told(self, planned: Planned, turn: int, best: float | None) -> None:
-        """A run has finished a turn; *best* is its best score since work on it began."""
+    def on_run_started(self, planned: Planned) -> None:
+        """Receive a run on which work begins."""
 
-    def ended(self, planned: Planned, end: End) -> None:
-        """Work on a run has ended."""
+    def on_turn_finished(self, planned: Planned, turn: int, best: float | None) -> None:
+        """Receive a run's latest turn, and its best score since work on it began."""
 
-    def looked(self) -> None:
-        """Some time has passed."""
+    def on_run_ended(self, planned: Planned, end: End) -> None:
+        """Receive how work on a run has ended."""
+
+    def on_tick(self) -> None:
+        """Update a display; called several times a second."""
 
 
 def claim(study: Study, directory: Path) -> None:
@@ -59,13 +66,13 @@ def claim(study: Study, directory: Path) -> None:
     except OSError as error:
         raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
     refuse_another(study, directory)  # what is somebody else's gets no lock
-    with alone(directory):
+    with lock_tables(directory):
         refuse_another(study, directory)  # again: another process may have been faster
         write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
 
 
-def alone(directory: Path) -> contextlib.AbstractContextManager[None]:
-    """Return what keeps other processes from writing the files that all runs of a study share.
+def lock_tables(directory: Path) -> contextlib.AbstractContextManager[None]:
+    """Keep other processes from writing the files that all runs of a study share.
 
     Args:
         directory: The directory of the study; :func:`claim` makes it.
@@ -86,9 +93,12 @@ def refuse_another(study: Study, directory: Path) -> None:
         InputError: It is the directory of another study, or of something else, or has more.
     """
     path = directory / STUDY_FILE
-    occupied = _is_occupied(directory)
+    try:  # processes that begin a study leave more than nothing before its file
+        occupied = any(each.name != _LOCK_FILE and not is_leftover(each) for each in directory.iterdir())
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
     if path.is_file():  # only now: another process makes it before anything else
-        there = _read(path)
+        there = parsed_toml(read_text(path, LARGEST_DOCUMENT), str(path))
         others = differences(_shared(there), _shared(_tables(study)))
         if others:
             listed = "\n  ".join(others)
@@ -103,87 +113,67 @@ def refuse_another(study: Study, directory: Path) -> None:
         raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
 
 
-def _is_occupied(directory: Path) -> bool:
-    """Return whether there is more than what the processes that begin a study leave before its file."""
-    try:
-        return any(path.name != _LOCK_FILE and not is_leftover(path) for path in directory.iterdir())
-    except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
-
-
-def survey(study: Study, directory: Path, imported: Collection[Planned] = ()) -> dict[Planned, Status]:
+def survey(
+    study: Study,
+    directory: Path,
+    imported: Mapping[Planned, Row] | None = None,
+    *,
+    rows: bool = False,
+    known: Mapping[Planned, Status] | None = None,
+) -> dict[Planned, Status]:
     """Return how far each run of a study is, in the order of work.
 
     Args:
         study: The study.
         directory: Its directory.
-        imported: Runs whose rows came from elsewhere, which counts where they are not finished here.
+        imported: Rows that came from elsewhere, which count where the run is not finished here.
+        rows: Whether to read the row of each finished run, too, while the run is open.
+        known: What was found before of runs on which nothing is left to do; these are not opened again.
 
     Raises:
         InputError: One of them is damaged, or of another study.
     """
-    try:
-        own = {planned: status(planned) for planned in study.planned(directory)}
-    except InputError as error:
-        raise InputError(f"{error}; {REMEDY}") from error
-    return {
-        planned: Status("imported") if planned in imported and not found.is_done else found
-        for planned, found in own.items()
-    }
+    imported, known, found = imported or {}, known or {}, {}
+    for planned in study.planned(directory):
+        with with_remedy():
+            status = known.get(planned) or status_of(planned, with_row=rows)
+        if planned in imported and not status.is_done:
+            status = Status("imported", row=imported[planned])
+        found[planned] = status
+    return found
 
 
-def conduct(
-    orders: Mapping[Planned, Order], workers: int, watcher: Watcher, stop: Callable[[], bool]
-) -> None:
+def execute(orders: Mapping[Planned, Order], pool: Pool, watcher: Watcher, stop: Callable[[], bool]) -> None:
     """Make runs, or go on with them, as many at a time as there are workers.
 
     Args:
         orders: The runs, in the order of work, and what is said to the workers about each.
-        workers: The number of processes.
-        watcher: Is told how it goes on.
+        pool: The workers.
+        watcher: Receives the progress.
         stop: Asked again and again whether to stop; what is running stops after its turn.
     """
-    with contextlib.closing(Pool(workers)) as pool:
-        _Conduct(orders, workers, watcher, pool).work(stop)
-
-
-@attrs.define
-class _Conduct:
-    orders: Mapping[Planned, Order]
-    workers: int
-    watcher: Watcher
-    pool: Pool
-    running: dict[Future[End], Planned] = attrs.field(factory=dict, init=False)
-
-    def work(self, stop: Callable[[], bool]) -> None:
-        waiting = deque(self.orders)
-        while waiting or self.running:
-            if stop():
-                waiting.clear()
-                self.pool.ask_to_stop()
-            while waiting and len(self.running) < self.workers:
-                self._start(waiting.popleft())
-            done, _ = concurrent.futures.wait(self.running, INTERVAL, FIRST_COMPLETED)
-            self._pass_on()
-            for future in done:
-                self._end(self.running.pop(future), end_of(future))
-            self.watcher.looked()
-
-    def _start(self, planned: Planned) -> None:
-        forget_failure(planned.directory)
-        self.running[self.pool.start(self.orders[planned])] = planned
-        self.watcher.began(planned)
-
-    def _pass_on(self) -> None:
-        running = {planned.directory: planned for planned in self.running.values()}
-        for directory, turn, best in self.pool.news():
-            if directory in running:
-                self.watcher.told(running[directory], turn, best)
-
-    def _end(self, planned: Planned, end: End) -> None:
-        if end.state == "failed":
-            note_failure(planned.directory, end.cause)
-        self.watcher.ended(planned, end)
+    waiting = deque(orders)
+    running: dict[Future[End], Planned] = {}
+    while waiting or running:
+        if stop():
+            waiting.clear()
+            pool.ask_to_stop()
+        while waiting and len(running) < pool.workers:
+            planned = waiting.popleft()
+            forget_failure(planned.directory)
+            running[pool.start(orders[planned])] = planned
+            watcher.on_run_started(planned)
+        ended, _ = concurrent.futures.wait(running, INTERVAL, FIRST_COMPLETED)
+        by_directory = {planned.directory: planned for planned in running.values()}
+        for directory, turn, best in pool.news():
+            if directory in by_directory:
+                watcher.on_turn_finished(by_directory[directory], turn, best)
+        for future in ended:
+            planned, end = running.pop(future), end_of(future)
+            if end.state == "failed":
+                note_failure(planned.directory, end.cause)
+            watcher.on_run_ended(planned, end)
+        watcher.on_tick()
 
 
 def _tables(study: Study) -> dict[str, Any]:
@@ -206,10 +196,3 @@ def _gone(there: Mapping[str, Any], study: Study) -> Iterator[str]:
         listed = values if isinstance(values, list) else []
         if gone := [shown(value) for value in listed if shown(value) not in now]:
             yield f"grid.{key}: {', '.join(gone)} there, not now"
-
-
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(read_text(path, 16))
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not valid TOML: {error}") from error

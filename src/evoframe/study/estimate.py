@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 
 import attrs
 
-from evoframe.evolution.assembly import assemble
-from evoframe.record.run import open_run
+from evoframe.evolution import assemble
 from evoframe.study.plan import Planned
 
-__all__ = ["Estimate", "estimated"]
+__all__ = ["Estimate", "estimate_cost"]
 
 _BYTES = 200_000, 40  # of a run's directory: its state, and each pair with its share of the individuals
 
@@ -30,34 +29,25 @@ class Estimate:
     measured: str
 
 
-def estimated(missing: Sequence[Planned], finished: Sequence[Planned]) -> Estimate:
+def estimate_cost(missing: Sequence[Planned], finished: Mapping[Planned, float]) -> Estimate:
     """Return what the missing runs will take: at most that, where it is concluded from a trial.
 
     The costs of a run go with its pairs, although those that were simulated before cost little.
+
+    Args:
+        missing: The runs.
+        finished: Runs that are there, and how many seconds each has taken.
     """
     pairs = sum(run.cell.pairs for run in missing)
     if finished:
-        done = sum(run.cell.pairs for run in finished)
-        seconds, size = _seconds(finished), sum(_size(run) for run in finished)
-        return Estimate(seconds / done * pairs, size / done * pairs / 1e6, f"{len(finished)} finished runs")
+        share = pairs / sum(run.cell.pairs for run in finished)
+        size = sum(path.stat().st_size for run in finished for path in run.directory.iterdir())
+        measured = f"{len(finished)} finished runs"
+        return Estimate(sum(finished.values()) * share, size * share / 1e6, measured)
+    seconds_per_pair = 0.0
+    if missing:
+        with assemble(missing[0].cell.config) as coevolution:
+            work = next(iter(coevolution)).workload  # the initial meeting: few pairs are repeats
+            seconds_per_pair = work.seconds / work.pairs * coevolution.evaluator.workers.workers
     size = len(missing) * _BYTES[0] + pairs * _BYTES[1]
-    return Estimate(_trial(missing[0]) * pairs if missing else 0.0, size / 1e6, "the first turn of one run")
-
-
-def _seconds(runs: Iterable[Planned]) -> float:
-    total = 0.0
-    for planned in runs:
-        with open_run(planned.directory) as run:
-            total += sum(row["seconds"] for row in run.workload())
-    return total
-
-
-def _size(run: Planned) -> int:
-    return sum(path.stat().st_size for path in run.directory.iterdir())
-
-
-def _trial(run: Planned) -> float:
-    """Return what a pair takes in the initial meeting, where few are repeats."""
-    with assemble(run.cell.config) as coevolution:
-        work = next(iter(coevolution)).workload
-        return work.seconds / work.pairs * coevolution.evaluator.workers.workers
+    return Estimate(seconds_per_pair * pairs, size / 1e6, "the first turn of one run")

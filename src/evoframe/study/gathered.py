@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TypeAlias
 
 from evoframe.errors import InputError
-from evoframe.record.run import open_run
+from evoframe.record import open_run
 from evoframe.study.plan import Planned, Study, shown
-from evoframe.study.progress import REMEDY, Status
+from evoframe.study.progress import Status, with_remedy
 from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write_rows
 
 __all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
 
-_TOLD = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # the same whoever made a run
+_REPEATABLE = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # the same whoever made a run
 
 _Key: TypeAlias = tuple[frozenset[tuple[str, str]], int]  # settings and number of a run
 
@@ -46,18 +46,19 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> dict[Pl
 
 def _joined(planned: Mapping[_Key, Planned], directory: Path, paths: Iterable[Path]) -> list[Row]:
     """Return the rows that were imported before, and those of more tables."""
-    kept = {_key(row): row for row in _kept(directory)}
+    before = directory / IMPORTED / ROWS_FILE
+    kept = {_key(row): row for row in (read_rows(before) if before.is_file() else ())}
     for path in paths:
         for row in read_rows(path):
             run = planned.get(_key(row))
             if run is None:
                 raise InputError(f"{path}: {_named(row)}: is no run of this study")
             _refuse_another(row, run, path)
-            before = kept.get(_key(row), row)
-            if differing := [name for name in _TOLD if getattr(before, name) != getattr(row, name)]:
+            earlier = kept.get(_key(row), row)
+            if differing := [name for name in _REPEATABLE if getattr(earlier, name) != getattr(row, name)]:
                 what = " and ".join(differing)
                 raise InputError(f"{path}: {_named(row)}: another {what} than in the rows imported before")
-            kept[_key(row)] = before if before.fitness_curve else row  # which may have curves
+            kept[_key(row)] = earlier if earlier.fitness_curve else row  # which may have curves
     return list(kept.values())
 
 
@@ -86,11 +87,6 @@ def _of_runs(rows: Iterable[Row], planned: Mapping[_Key, Planned], directory: Pa
     return found
 
 
-def _kept(directory: Path) -> list[Row]:
-    path = directory / IMPORTED / ROWS_FILE
-    return read_rows(path) if path.is_file() else []
-
-
 def _key(row: Row) -> _Key:
     return frozenset(row.settings.items()), row.run
 
@@ -109,25 +105,22 @@ def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) 
     """Return the rows of all runs that are done, in the order of work.
 
     Args:
-        statuses: How far each run is.
+        statuses: How far each run is; rows that the survey has not read are read now.
         imported: The rows that came from elsewhere.
 
     Raises:
         InputError: The directory of a run is damaged.
     """
-    try:
-        return {
-            planned: imported[planned] if status.state == "imported" else _own_row(planned)
-            for planned, status in statuses.items()
-            if status.is_done
-        }
-    except InputError as error:
-        raise InputError(f"{error}; {REMEDY}") from error
-
-
-def _own_row(planned: Planned) -> Row:
-    with open_run(planned.directory) as run:
-        return row_of(planned, run)
+    rows = {}
+    for planned, status in statuses.items():
+        if status.row is not None:
+            rows[planned] = status.row
+        elif status.state == "imported":
+            rows[planned] = imported[planned]
+        elif status.is_done:
+            with with_remedy(), open_run(planned.directory) as run:
+                rows[planned] = row_of(planned, run)
+    return rows
 
 
 def _refuse_another(row: Row, run: Planned, path: Path) -> None:

@@ -6,22 +6,22 @@ import functools
 import hashlib
 import itertools
 import json
+import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.config.layers import Layer, Layers, layer_of, read_layers
-from evoframe.config.resolve import resolved
-from evoframe.contract.config import RunConfig
-from evoframe.documents.trees import Tree
+from evoframe.config import Layer, Layers, layer_of, read_layers, resolved
+from evoframe.contract import RunConfig
+from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError
-from evoframe.evolution.coevolution import first_meetings
+from evoframe.evolution import first_meetings
 from evoframe.messages import found, suggestion
-from evoframe.registry.registry import Plugins
+from evoframe.registry import Plugins, discover
 from evoframe.study.names import headings
 
 __all__ = ["Cell", "Planned", "Study", "read_study", "shown", "study_names"]
@@ -155,13 +155,15 @@ def study_names() -> list[str]:
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
 
-def read_study(source: str | Path, overrides: Iterable[str | Layer], plugins: Plugins) -> Study:
+def read_study(
+    source: str | Path, overrides: Iterable[str | Layer] = (), plugins: Plugins | None = None
+) -> Study:
     """Read and check a study, all of its cells.
 
     Args:
         source: Path of a TOML file, or the name of a study that comes with evoframe.
         overrides: As for :func:`~evoframe.load_config`; ``runs`` and ``grid`` can be set too.
-        plugins: The plugins to choose from.
+        plugins: The plugins to choose from; by default those that are installed.
 
     Raises:
         ConfigurationError: With all faults of the first cell that has any.
@@ -171,15 +173,19 @@ def read_study(source: str | Path, overrides: Iterable[str | Layer], plugins: Pl
     for key, what in _OWN_KEYS.items():
         if key not in tree:
             raise ConfigurationError(f"{source}: {key}: is missing: {what}")
-    origin = read.origin(("grid",))
-    runs, grid = _runs(tree["runs"], read.origin(("runs",))), _grid(tree["grid"], origin)
-    layers, label = read.without(*_OWN_KEYS), Path(source).stem
-    if runs * _size(grid) > _MOST_RUNS:
-        raise ConfigurationError(f"{origin}: a study of {runs * _size(grid)} runs; at most {_MOST_RUNS}")
-    cells = [
-        Cell(settings, resolved(layers.under(_layers(settings, f"{origin}: ")), label, plugins))
-        for settings in _combinations(grid)
-    ]
+    origin, runs = read.origin(("grid",)), tree["runs"]
+    if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
+        where, expected = read.origin(("runs",)), "expected a whole number from 1 up"
+        raise ConfigurationError(f"{where}: runs: {expected}, found {found(runs)}")
+    grid = _grid(tree["grid"], origin)
+    size = runs * math.prod(len(values) for values in grid.values())
+    if size > _MOST_RUNS:
+        raise ConfigurationError(f"{origin}: a study of {size} runs; at most {_MOST_RUNS}")
+    layers, label, plugins = read.without(*_OWN_KEYS), Path(source).stem, plugins or discover()
+    cells = []
+    for values in itertools.product(*grid.values()):
+        settings = tuple(zip(grid, values, strict=True))
+        cells.append(Cell(settings, resolved(layers.under(_layers(settings, f"{origin}: ")), label, plugins)))
     return Study(layers, label, grid, runs, tuple(cells))
 
 
@@ -196,17 +202,13 @@ def _file_of(source: str | Path) -> str | Path:
     return source
 
 
-def _runs(runs: Any, origin: str) -> int:
-    if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
-        raise ConfigurationError(f"{origin}: runs: expected a whole number from 1 up, found {found(runs)}")
-    return runs
-
-
 def _grid(table: Any, origin: str) -> dict[str, tuple[Any, ...]]:
     """Return the grid; a quoted dotted key and a table within a table mean the same."""
     axes = list(_axes(table, (), origin))
-    _refuse_overlaps([key for key, _ in axes], origin)
     grid = dict(axes)
+    for one, other in itertools.combinations(sorted(key for key, _ in axes), 2):
+        if other.startswith(f"{one}."):
+            raise ConfigurationError(f"{origin}: grid: {other}: is a part of {one}, which is there too")
     for key, values in grid.items():
         if key == "run.seed":
             raise ConfigurationError(f"{origin}: grid: run.seed: seeds are derived; say with runs how many")
@@ -223,13 +225,6 @@ def _grid(table: Any, origin: str) -> dict[str, tuple[Any, ...]]:
     return grid
 
 
-def _refuse_overlaps(keys: Sequence[str], origin: str) -> None:
-    """Refuse keys of which one sets a part of the other."""
-    for one, other in itertools.combinations(sorted(keys), 2):
-        if other.startswith(f"{one}."):
-            raise ConfigurationError(f"{origin}: grid: {other}: is a part of {one}, which is there too")
-
-
 def _axes(table: Any, path: tuple[str, ...], origin: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
     if not isinstance(table, Mapping):
         where = ".".join(("grid", *path))
@@ -242,18 +237,6 @@ def _axes(table: Any, path: tuple[str, ...], origin: str) -> Iterator[tuple[str,
             yield dotted, tuple(value)
         else:
             yield from _axes(value, (*path, key), origin)
-
-
-def _combinations(grid: Mapping[str, tuple[Any, ...]]) -> Iterator[Settings]:
-    for values in itertools.product(*grid.values()):
-        yield tuple(zip(grid, values, strict=True))
-
-
-def _size(grid: Mapping[str, tuple[Any, ...]]) -> int:
-    size = 1
-    for values in grid.values():
-        size *= len(values)
-    return size
 
 
 def _layers(settings: Settings, where: str = "") -> list[Layer]:

@@ -15,7 +15,7 @@ import pebble
 from evoframe.errors import LockedError
 from evoframe.messages import cause_of
 from evoframe.study.worker import Order, Talk, perform
-from evoframe.workers.processes import WorkerProcesses
+from evoframe.workers import WorkerProcesses
 
 __all__ = ["End", "News", "Pool", "end_of"]
 
@@ -30,24 +30,29 @@ class End:
     Attributes:
         state: ``finished``; ``stopped`` on demand; ``elsewhere`` where another process is at it; ``failed``.
         cause: Why it failed.
+        score: That of its best pair, if it is finished.
     """
 
     state: Literal["finished", "stopped", "elsewhere", "failed"]
     cause: str = ""
+    score: float | None = None
 
 
 class Pool:
     """Workers that are ready.
 
     Workers and this process share no lock: one that is killed while it has it would stop all others.
+
+    Attributes:
+        workers: How many there are.
     """
 
     def __init__(self, workers: int) -> None:
+        self.workers = workers
         context = WorkerProcesses.context
         self._news, self._tell = context.Pipe(duplex=False)
         self._asked, self._stop = context.Pipe(duplex=False)
         self._orders: list[Order] = []
-        self._workers = workers
         self._processes = self._started()
 
     def start(self, order: Order) -> Future[End]:
@@ -59,7 +64,7 @@ class Pool:
         return self._processes.schedule(_work, [len(self._orders) - 1, order])
 
     def _started(self) -> WorkerProcesses:
-        return WorkerProcesses(self._workers, _begin, [self._tell, self._asked])
+        return WorkerProcesses(self.workers, _begin, [self._tell, self._asked])
 
     def news(self) -> Iterator[News]:
         """Yield what the workers have told since the last time."""
@@ -109,7 +114,8 @@ def _talk(number: int) -> Talk:
 
 def _work(number: int, order: Order) -> End:
     try:
-        return End("finished" if perform(order, _talk(number)) else "stopped")
+        run = perform(order, _talk(number))
+        return End("stopped") if run is None else End("finished", score=run.summary()["best_pair_score"])
     except LockedError:
         return End("elsewhere")
     except Exception as error:  # noqa: BLE001 - the other runs of a study go on, and this one says why not

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal, TypeAlias
 
 import attrs
 
 from evoframe.errors import InputError, LockedError
-from evoframe.files.locks import locked
-from evoframe.files.reading import read_text
-from evoframe.files.writing import write_json
-from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.run import open_run
-from evoframe.runs.resuming import is_verified
+from evoframe.files import LARGEST_DOCUMENT, locked, parsed_json, read_text, write_json
+from evoframe.record import CONFIG_FILE, open_run
+from evoframe.runs import is_verified
 from evoframe.study.plan import Planned
+from evoframe.study.rows import Row, row_of
 
-__all__ = ["FAILURE_FILE", "REMEDY", "Status", "forget_failure", "note_failure", "status"]
+__all__ = ["FAILURE_FILE", "REMEDY", "Status", "forget_failure", "note_failure", "status_of", "with_remedy"]
 
 REMEDY = "a run whose directory is removed is made again"
 """What to do about one that is damaged."""
@@ -37,11 +35,13 @@ class Status:
         state: ``missing``, ``begun``, ``failed``, ``finished``, or ``imported``: its row came from elsewhere.
         cause: Why it failed.
         verified: Where it is finished: whether its champion was verified, or cannot be.
+        row: Its row, where it is done and the row was read.
     """
 
     state: State
     cause: str = ""
     verified: bool = True
+    row: Row | None = attrs.field(default=None, eq=False, repr=False)
 
     @property
     def is_done(self) -> bool:
@@ -54,8 +54,24 @@ class Status:
         return self.is_done and self.verified
 
 
-def status(planned: Planned) -> Status:
+@contextlib.contextmanager
+def with_remedy() -> Iterator[None]:
+    """Add to an error about a damaged run what to do."""
+    try:
+        yield
+    except LockedError:
+        raise  # nothing is damaged
+    except InputError as error:
+        error.add_note(REMEDY)
+        raise
+
+
+def status_of(planned: Planned, *, with_row: bool = False) -> Status:
     """Return how far a run is.
+
+    Args:
+        planned: The run.
+        with_row: Whether to read its row, too, if it is finished.
 
     Raises:
         InputError: Its directory is damaged, or holds the run of another study.
@@ -69,10 +85,15 @@ def status(planned: Planned) -> Status:
     with open_run(directory) as run:
         if not run.begun:
             return Status("begun")
-        _refuse_another(planned, run.configuration())
+        if run.configuration() != planned.deciding():
+            raise InputError(
+                f"{directory}: is a run of another study: its configuration is not that of "
+                f"'{planned.label}'; choose another directory with --out"
+            )
         if not run.finished():
             return Status("begun")
-        return Status("finished", verified=is_verified(run, planned.cell.config))
+        verified = is_verified(run, planned.cell.config)
+        return Status("finished", verified=verified, row=row_of(planned, run) if with_row else None)
 
 
 def note_failure(directory: Path, cause: str) -> None:
@@ -99,18 +120,10 @@ def forget_failure(directory: Path) -> None:
 def _cause(path: Path) -> str | None:
     """Return why a run failed; ``None`` if it has not, or another process has just begun it again."""
     try:
-        return str(json.loads(read_text(path, 1))["cause"])
+        return str(parsed_json(read_text(path, LARGEST_DOCUMENT))["cause"])
     except InputError as error:
         if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
             return None
         raise
     except (ValueError, KeyError, TypeError):
         return "unknown"
-
-
-def _refuse_another(planned: Planned, configuration: object) -> None:
-    if configuration != planned.deciding():
-        raise InputError(
-            f"{planned.directory}: is a run of another study: its configuration is not that of "
-            f"'{planned.label}'; choose another directory with --out"
-        )

@@ -14,10 +14,8 @@ from typing import Any, TypeVar
 import attrs
 
 from evoframe.errors import InputError
-from evoframe.files.reading import read_text
-from evoframe.files.writing import write_atomically
-from evoframe.record.layout import CHAMPION_FILE
-from evoframe.record.run import Run
+from evoframe.files import LARGEST_DOCUMENT, read_text, write_atomically
+from evoframe.record import CHAMPION_FILE, Run
 from evoframe.study.plan import Planned, shown
 
 __all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "score_curve", "write_rows"]
@@ -25,8 +23,6 @@ __all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "
 ROWS_FILE = "rows.csv"
 CURVES_FILE = "curves.csv"
 """Beside the rows: for each two lines, ``fitness`` and ``score``, with a number for each generation."""
-
-_LARGEST = 64  # MiB
 
 T = TypeVar("T")
 
@@ -156,7 +152,7 @@ def write_rows(rows: Sequence[Row], path: Path) -> None:
     Raises:
         RunError: They cannot be written.
     """
-    keys = _keys(rows)
+    keys = list(dict.fromkeys(key for row in rows for key in row.settings))
     figures = [[getattr(row, name) for name in _COLUMNS] for row in rows]
     table = [[*_settings(row, keys), *values] for row, values in zip(rows, figures, strict=True)]
     write_atomically(path, _csv([*keys, *_COLUMNS], table))
@@ -178,10 +174,6 @@ def _short(value: float) -> str:
 
 def _settings(row: Row, keys: Iterable[str]) -> list[str]:
     return [row.settings.get(key, "") for key in keys]
-
-
-def _keys(rows: Iterable[Row]) -> list[str]:
-    return list(dict.fromkeys(key for row in rows for key in row.settings))
 
 
 _LINE_END = "\r\n"  # what the writer looks for in a value that it must quote
@@ -226,7 +218,7 @@ def read_rows(path: Path) -> list[Row]:
 
 def _table(path: Path, columns: Collection[str]) -> list[dict[str, str]]:
     try:
-        reader = csv.DictReader(io.StringIO(read_text(path, _LARGEST)), strict=True)
+        reader = csv.DictReader(io.StringIO(read_text(path, LARGEST_DOCUMENT)), strict=True)
         lines, there = list(reader), reader.fieldnames or ()
     except csv.Error as error:
         raise InputError(f"{path}: is no table: {error}") from error

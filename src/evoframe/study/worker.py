@@ -10,20 +10,13 @@ from typing import Any
 
 import attrs
 
-from evoframe.config.layers import Layer, Layers, layer_of
-from evoframe.config.resolve import resolved
-from evoframe.contract.config import RunConfig
-from evoframe.contract.values import Turn
-from evoframe.errors import InputError, LockedError, NotEmptyError, OccupiedError
-from evoframe.record.layout import CONFIG_FILE
-from evoframe.record.run import open_run
-from evoframe.registry.discovery import discover
-from evoframe.registry.hookspecs import hookimpl
-from evoframe.registry.registry import Plugins
-from evoframe.runs.execution import Execution
-from evoframe.runs.resuming import configuration_of, is_finished, reopen, verify_if_missing
-from evoframe.runs.starting import prepare
-from evoframe.study.progress import REMEDY
+from evoframe.config import Layer, Layers, layer_of, resolved
+from evoframe.contract import Turn
+from evoframe.errors import NotEmptyError, OccupiedError
+from evoframe.record import CONFIG_FILE, Run, open_run
+from evoframe.registry import Plugins, discover, hookimpl
+from evoframe.runs import Execution, configuration_of, is_finished, prepare, reopen, verify_if_missing
+from evoframe.study.progress import with_remedy
 
 __all__ = ["INTERVAL", "Order", "Talk", "perform"]
 
@@ -61,56 +54,49 @@ class Talk:
     stop: Callable[[], bool]
 
 
-def perform(order: Order, talk: Talk) -> bool:
-    """Begin a run, or go on with it, and verify its champion; return whether it came to its end.
+def perform(order: Order, talk: Talk) -> Run | None:
+    """Begin a run, or go on with it, and verify its champion.
+
+    Returns:
+        The finished run; ``None`` if it was stopped.
 
     Raises:
         LockedError: Another process is at it.
         EvoframeError: It cannot be made, cannot go on, or cannot be verified.
     """
     plugins = discover(order.modules)
-    alone = _alone(resolved(order.layers, order.label, plugins))
-    execution = _begun(order, alone, plugins) or _reopened(order, alone, plugins)
+    executor: Any = type(resolved(order.layers, order.label, plugins).executor.component)
+    spreads = "workers" in attrs.fields_dict(executor)
+    # One core for each run: the others have runs of their own.
+    alone = [layer_of("one worker for each run", "executor.workers", 1)] if spreads else []
+    execution = _begun(order, alone, plugins)
     if execution is None:
-        return True
+        with open_run(order.directory) as run:
+            if is_finished(run):
+                verify_if_missing(run, configuration_of(run, alone, plugins))
+                return run
+            execution = reopen(run, alone, plugins)
     execution.plugins.manager.register(_Teller(talk), name="evoframe:study")
-    run = execution.play(talk.stop)
-    if run.finished():
-        execution.verify(run)
-    return run.finished()
-
-
-def _reopened(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
-    """Return the run that is there, ready to go on; ``None`` if it is finished, and verified now."""
-    with open_run(order.directory) as run:
-        if not is_finished(run):
-            return reopen(run, alone, plugins)
-        verify_if_missing(run, configuration_of(run, alone, plugins))
-    return None
+    played = execution.play(talk.stop)
+    if not played.finished():
+        return None
+    execution.verify(played)
+    return played
 
 
 def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
     """Return a new run; ``None`` if there is one already."""
     if (order.directory / CONFIG_FILE).exists():
         return None
-    try:
-        return prepare(resolved(order.layers.under(alone), order.label, plugins), plugins, order.directory)
-    except OccupiedError:  # by another process, a moment ago
-        return None
-    except LockedError:
-        raise
-    except InputError as error:
-        # A run of a study has its place: it is no help that another directory could be chosen.
-        what = f"{order.directory}: is not empty" if isinstance(error, NotEmptyError) else error
-        raise InputError(f"{what}; {REMEDY}") from error
-
-
-def _alone(config: RunConfig) -> list[Layer]:
-    """Return what lets the executor work on one core: the others have runs of their own."""
-    component: Any = type(config.executor.component)
-    if "workers" not in attrs.fields_dict(component):
-        return []
-    return [layer_of("one worker for each run", "executor.workers", 1)]
+    config = resolved(order.layers.under(alone), order.label, plugins)
+    with with_remedy():
+        try:
+            return prepare(config, plugins, order.directory)
+        except OccupiedError:  # by another process, a moment ago
+            return None
+        except NotEmptyError as error:
+            # A run of a study has its place: it is no help that another directory could be chosen.
+            raise NotEmptyError(f"{order.directory}: is not empty") from error
 
 
 class _Teller:

@@ -1,0 +1,63 @@
+"""Options and output that several commands share."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from processes import Evoframe
+
+from evoframe import InputError
+from evoframe.cli.context import needing_extra, scored
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_quiet_says_only_where_the_run_is(evoframe: Evoframe, before: bool) -> None:
+    command = ["run", "quick", "--set", "run.generations=0"]
+    ran = evoframe("-q", *command) if before else evoframe(*command, "--quiet")
+    assert (ran.stdout, ran.stderr) == ("runs/quick-1\n", "")
+
+
+def test_no_colour_where_there_is_no_terminal_or_none_is_wanted(evoframe: Evoframe) -> None:
+    ran = evoframe("run", "quick", "--set", "run.generations=0", NO_COLOR="1", FORCE_COLOR="1")
+    assert not re.search(r"\x1b\[[0-9;]*3[0-7]m", ran.stdout + ran.stderr)
+
+
+def test_verbose_tells_of_better_pairs_and_doubly_verbose_of_every_turn(evoframe: Evoframe) -> None:
+    def told(*flags: str) -> str:
+        return evoframe(*flags, "run", "quick", "--set", "run.generations=2").stderr
+
+    assert "a pair with the score" not in told()
+    assert "turn 0: a pair with the score" in told("-v")
+    assert "turn 4: controller: best" not in told("-v")
+    assert "turn 4: controller: best" in told("-vv")
+
+
+def test_names_are_shown_as_they_are_written(evoframe: Evoframe) -> None:
+    ran = evoframe("run", "quick", "--set", "run.generations=0", "--out", "r[/a] [bold]x :smile:")
+    assert ran.returncode == 0, ran.stderr
+    assert "directory" in ran.stdout
+    assert "r[/a] [bold]x :smile:" in ran.stdout
+
+
+def test_a_score_is_shown_with_all_its_digits_and_its_unit() -> None:
+    assert scored(0.1 + 0.2, "m") == "0.30000000000000004 m"
+    assert scored(2.0, "") == "2.0"
+    assert scored(None, "m") == "diverged"
+
+
+def test_what_an_extra_brings_is_named_where_it_is_missing() -> None:
+    with (
+        pytest.raises(
+            InputError, match=r"nowhere is not installed; for tea: pip install 'evoframe\[report\]'"
+        ),
+        needing_extra("report", "tea"),
+    ):
+        raise ModuleNotFoundError(name="nowhere.near")
+
+
+@pytest.mark.parametrize(
+    "placed", [("-q", "config", "show"), ("config", "-q", "show"), ("config", "show", "-q")]
+)
+def test_common_options_stand_anywhere(evoframe: Evoframe, placed: tuple[str, ...]) -> None:
+    assert evoframe(*placed).returncode == 0

@@ -1,0 +1,96 @@
+"""What a run shows at its end, and when it is interrupted."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import subprocess
+from pathlib import Path
+
+import toys
+from processes import Evoframe, started, told
+
+import evoframe as package
+
+
+def slow_run(directory: Path, *settings: str) -> contextlib.AbstractContextManager[subprocess.Popen[str]]:
+    """Start a run of toys that takes its time."""
+    (directory / "toy.toml").write_text(toys.CONFIGURATION)
+    options = [option for setting in settings for option in ("--set", setting)]
+    return started(directory, "run", "-v", "-p", toys.__file__, "toy.toml", "--out", "here", *options)
+
+
+def test_the_summary_counts_the_pairs_that_diverged(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    ran = evoframe("-p", toys.__file__, "run", "toy.toml", "--set", "simulator.limit=0.15", "--out", "here")
+    assert ran.returncode == 0, ran.stderr
+    pairs = package.load_run(tmp_path / "here").pairs()
+    diverged = sum(pair["score"] is None for pair in pairs)
+    assert diverged > 0
+    assert f"simulated and {diverged} diverged" in ran.stdout
+
+
+def test_ends_with_the_verification_of_its_champion(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    command = ["run", "-p", toys.__file__, "toy.toml", "--set", "simulator=toy-varied"]
+    ran = evoframe(*command, "--out", "here")
+    assert ran.returncode == 0, ran.stderr
+    summary, table = ran.stdout.split("\n\n")
+    assert "best pair simulated" in summary
+    assert [line.split()[0] for line in table.splitlines()] == [
+        "variant", "unchanged", "gain", "no", "one",
+    ]  # fmt: skip
+    assert "verifying the champion" in ran.stderr
+    quiet = evoframe("-q", *command, "--out", "quiet")
+    assert (quiet.stdout, quiet.stderr) == ("quiet\n", "")
+    stored = [(tmp_path / name / "verification.json").read_bytes() for name in ("here", "quiet")]
+    assert stored[0] == stored[1]
+
+
+def test_without_variants_says_nothing_of_a_verification(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    ran = evoframe("run", "-p", toys.__file__, "toy.toml", "--out", "here")
+    assert (ran.returncode, "verify" in ran.stderr, "unchanged" in ran.stdout) == (0, False, False)
+
+
+def test_a_verification_that_fails_is_an_error_after_the_summary(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    ran = evoframe(
+        "run", "-p", toys.__file__, "toy.toml", "--set", "simulator=toy-unverifiable", "--out", "here"
+    )
+    assert ran.returncode == 1
+    assert "best pair simulated" in ran.stdout
+    assert ran.stderr.splitlines()[-1] == (
+        "Error: here: the run is complete and saved, but its champion cannot be verified: no variant fits"
+    )
+    assert package.load_run(tmp_path / "here").summary()["turns"] == 8
+
+
+def test_an_interrupt_of_the_verification_leaves_the_complete_run(tmp_path: Path) -> None:
+    with slow_run(tmp_path, "simulator={name='toy-unverifiable', delay=3600.0}") as process:
+        told(process, "verifying the champion")
+        process.send_signal(signal.SIGINT)
+        told(process, "Interrupted; the run is complete and saved in here, but not verified")
+        assert process.wait(60) == 130
+    assert package.load_run(tmp_path / "here").summary()["turns"] == 8
+
+
+def test_interrupt_stops_after_the_turn_and_keeps_it(tmp_path: Path) -> None:
+    with slow_run(tmp_path, "simulator={name='toy-slow', delay=0.2}", "run.generations=100") as process:
+        told(process, "turn 0: a pair with the score")
+        process.send_signal(signal.SIGINT)
+        told(process, "Interrupted; all turns up to ")
+        assert process.wait(60) == 130
+    turns = package.load_run(tmp_path / "here").turns()
+    assert 2 <= len(turns) < 200
+
+
+def test_a_second_interrupt_stops_at_once(tmp_path: Path) -> None:
+    with slow_run(tmp_path, "simulator={name='toy-slow', delay=3600.0}") as process:
+        told(process, "toy, seed 3: 8 turns into here")
+        process.send_signal(signal.SIGINT)
+        told(process, "press Ctrl-C again to stop at once")
+        process.send_signal(signal.SIGINT)
+        told(process, "Interrupted; no turn was finished in here")
+        assert process.wait(60) == 130
+    assert package.load_run(tmp_path / "here").turns() == []

@@ -1,0 +1,196 @@
+"""Studies from Python."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+import pytest
+import toys
+from processes import python
+
+from evoframe import InputError, plan_study, run_study
+from evoframe.study.api import StudyResult
+from evoframe.study.conduct import Watcher
+from evoframe.study.plan import Planned, Study
+from evoframe.study.pool import End
+from evoframe.study.progress import FAILURE_FILE
+from evoframe.study.rows import Row, read_rows
+
+Read = Callable[..., Study]
+
+PAGE = Path(__file__).parents[2] / "docs" / "studies.md"
+
+
+@attrs.define
+class Notes(Watcher):
+    """Notes what a watcher receives."""
+
+    done: int = 0
+    ends: list[End] = attrs.field(factory=list)
+    started: list[Planned] = attrs.field(factory=list)
+
+    def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
+        self.done = len(done)
+
+    def on_run_started(self, planned: Planned) -> None:
+        self.started.append(planned)
+
+    def on_run_ended(self, planned: Planned, end: End) -> None:
+        self.ends.append(end)
+
+
+@pytest.fixture
+def few(toy_study: Read) -> Study:
+    """A study of two runs."""
+    return toy_study("runs=1", "grid.collaboration.n=[1]")
+
+
+@pytest.fixture
+def run(few: Study, tmp_path: Path) -> Callable[..., StudyResult]:
+    def run_it(study: Study = few, **given: Any) -> StudyResult:
+        return run_study(
+            study, **{"out": tmp_path / "there", "modules": [toys.__file__], "workers": 1, **given}
+        )
+
+    return run_it
+
+
+def test_what_is_missing_is_run_and_what_is_there_is_returned(
+    run: Callable[..., StudyResult], few: Study, tmp_path: Path
+) -> None:
+    notes = Notes()
+    made = run(watcher=notes)
+    assert made.directory == tmp_path / "there"
+    assert [run.cell for run in made.rows] == list(few.cells)
+    assert (made.failed, made.left) == ({}, [])
+    assert [end.score for end in notes.ends] == [row.score for row in made.rows.values()]
+    written = [attrs.evolve(row, score_curve=(), fitness_curve=()) for row in made.rows.values()]
+    (made.directory / "curves.csv").unlink()
+    assert read_rows(made.directory / "rows.csv") == written
+    again = Notes()
+    assert run(watcher=again) == made
+    assert (again.done, again.started) == (2, [])
+
+
+def test_a_run_that_fails_is_reported_and_the_others_go_on(
+    run: Callable[..., StudyResult], toy_study: Read, tmp_path: Path
+) -> None:
+    sound = tmp_path / "sound"
+    grid = f'grid.simulator=["toy-product", {{name="toy-unsound", sound="{sound}"}}]'
+    study = toy_study("runs=1", "grid.collaboration.n=[1]", grid)
+    made = run(study)
+    [(failed, cause)] = made.failed.items()
+    assert "ZeroDivisionError: not sound" in cause
+    assert made.left == [failed]
+    assert len(made.rows) == 1
+    assert run(study).failed == made.failed  # not tried again
+    sound.touch()
+    retried = run(study, retry=True)
+    assert (retried.failed, len(retried.rows)) == ({}, 2)
+
+
+def test_a_failure_shows_the_hint_that_its_error_has(run: Callable[..., StudyResult], few: Study) -> None:
+    first, _ = few.planned(run(stop=lambda: True).directory)
+    first.directory.mkdir(parents=True)
+    (first.directory / "letter").touch()
+    assert run().failed == {
+        first: f"{first.directory}: is not empty\n  a run whose directory is removed is made again"
+    }
+
+
+def test_a_stop_leaves_the_rest_for_the_next_time(run: Callable[..., StudyResult]) -> None:
+    notes = Notes()
+    stopped = run(watcher=notes, stop=lambda: bool(notes.started))
+    assert len(notes.started) == 1
+    assert len(stopped.left) == 2 - len(stopped.rows)
+    assert stopped.left
+    assert run().left == []
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_an_interrupt_writes_the_rows_and_is_raised_unless_a_stop_is_asked_for(
+    run: Callable[..., StudyResult], tmp_path: Path, asked: bool
+) -> None:
+    class Impatient(Notes):
+        def on_run_ended(self, planned: Planned, end: End) -> None:
+            super().on_run_ended(planned, end)
+            raise KeyboardInterrupt
+
+    notes = Impatient()
+
+    def stop() -> bool:
+        return asked and bool(notes.ends)
+
+    if asked:
+        assert len(run(watcher=notes, stop=stop).rows) == 1
+    else:
+        with pytest.raises(KeyboardInterrupt):
+            run(watcher=notes, stop=stop)
+    assert len(read_rows(tmp_path / "there" / "rows.csv")) == 1
+
+
+def test_rows_of_another_session_count_as_finished(run: Callable[..., StudyResult], tmp_path: Path) -> None:
+    made = run()
+    notes = Notes()
+    imported = run(out=tmp_path / "elsewhere", tables=[made.directory / "rows.csv"], watcher=notes)
+    assert (notes.done, notes.started) == (2, [])
+    assert {status.state for status in imported.statuses.values()} == {"imported"}
+    assert imported.finished == {}
+    assert [row.score for row in imported.rows.values()] == [row.score for row in made.rows.values()]
+
+
+def test_the_directory_of_something_else_is_refused(run: Callable[..., StudyResult], tmp_path: Path) -> None:
+    (tmp_path / "letters").mkdir()
+    (tmp_path / "letters" / "letter").touch()
+    with pytest.raises(InputError, match="is not empty, and not the directory of a study"):
+        run(out=tmp_path / "letters")
+
+
+def test_a_study_that_was_read_is_complete(few: Study) -> None:
+    with pytest.raises(TypeError, match="a study is complete; give settings to read_study"):
+        run_study(few, runs=3)
+
+
+class TestPlan:
+    def test_says_what_would_be_run_and_writes_nothing(
+        self, run: Callable[..., StudyResult], few: Study, toy_study: Read, tmp_path: Path
+    ) -> None:
+        planned = plan_study(few, out=tmp_path / "there")
+        assert len(planned.to_run) == 2
+        assert planned.estimate.measured == "the first turn of one run"
+        assert not (tmp_path / "there").exists()
+        run()
+        before = {path: path.stat().st_mtime_ns for path in (tmp_path / "there").rglob("*")}
+        more = plan_study(toy_study("runs=2", "grid.collaboration.n=[1]"), out=tmp_path / "there", workers=1)
+        assert (len(more.found.rows), len(more.to_run), more.cores) == (2, 2, 1)
+        assert more.estimate.measured == "2 finished runs"
+        assert {path: path.stat().st_mtime_ns for path in (tmp_path / "there").rglob("*")} == before
+
+    def test_counts_what_failed_on_demand(
+        self, run: Callable[..., StudyResult], few: Study, tmp_path: Path
+    ) -> None:
+        failed, _ = few.planned(run(stop=lambda: True).directory)
+        failed.directory.mkdir(parents=True)
+        (failed.directory / FAILURE_FILE).write_text('{"cause": "a fault"}')
+        assert len(plan_study(few, out=tmp_path / "there").to_run) == 1
+        assert len(plan_study(few, out=tmp_path / "there", retry=True).to_run) == 2
+
+    def test_takes_settings_as_run_does(self) -> None:
+        dotted: dict[str, Any] = {"run.generations": 3, "grid.aggregator": ["am"]}
+        planned = plan_study("small", runs=2, **dotted)
+        assert planned.found.directory == Path("studies/small")
+        assert len(planned.to_run) == 4
+        assert planned.to_run[0].cell.config.run.generations == 3
+
+
+def test_the_python_of_the_page_on_studies_runs(tmp_path: Path) -> None:
+    [block] = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    (tmp_path / "mine.py").write_text(block)
+    ran = python("mine.py", directory=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert len(ran.stdout.splitlines()) == 9
+    assert len(read_rows(tmp_path / "studies" / "few" / "rows.csv")) == 8
