@@ -10,11 +10,7 @@ from house import CORE, PLUGIN_PACKAGES, ROOT
 
 import evoframe
 
-INITS = [
-    path
-    for package in (CORE, *PLUGIN_PACKAGES)
-    for path in sorted(package.rglob("__init__.py"))
-]
+INITS = [path for package in (CORE, *PLUGIN_PACKAGES) for path in sorted(package.rglob("__init__.py"))]
 
 
 def submodules(package: Path) -> set[str]:
