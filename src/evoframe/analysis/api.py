@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from evoframe.analysis.data import StudyData
     from evoframe.analysis.report import Report
-    from evoframe.analysis.statistics import Correction
+    from evoframe.analysis.statistics.corrections import Correction
     from evoframe.record import Run
     from evoframe.registry import Plugins
 

@@ -7,11 +7,9 @@ from pathlib import Path
 import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
-from evoframe.contract import Chosen, Simulator, SupportsExport
-from evoframe.designs import naming, read_job
-from evoframe.errors import ConfigurationError, InputError, RunError
+from evoframe.designs import export_job, read_job
+from evoframe.errors import InputError, RunError
 from evoframe.files import write_atomically
-from evoframe.messages import suggestion
 
 __all__ = ["export"]
 
@@ -53,11 +51,7 @@ def export(
     design. What the format cannot say is named on standard error.
     """
     job = read_job(source, preset, overrides, plugins_of(ctx), runs=True)
-    if len(job.designs) != 1:
-        raise InputError(f"{source}: holds {len(job.designs)} designs, but a file is written of one")
-    simulator = _exporting(job.config.simulator, format_)
-    with naming(source):
-        exported = simulator.export(job.designs[0], format_)
+    exported = export_job(job, format_)
     for entry in exported.left_out:
         click.echo(f"Warning: left out: {entry}", err=True)
     default = job.path / f"champion.{format_}" if job.run else job.path.with_suffix(f".{format_}")
@@ -67,17 +61,6 @@ def export(
     else:
         _write(path, exported.data, force)
         click.echo(path)
-
-
-def _exporting(simulator: Chosen[Simulator], format_: str) -> SupportsExport:
-    """Return a simulator that writes a format, or refuse it."""
-    if not isinstance(simulator.component, SupportsExport):
-        raise ConfigurationError(f"the simulator '{simulator.name}' writes no files of other programs")
-    formats = simulator.component.formats
-    if format_ not in formats:
-        hint = suggestion(format_, formats, "formats")
-        raise ConfigurationError(f"the simulator '{simulator.name}' has no format '{format_}'{hint}")
-    return simulator.component
 
 
 def _write(path: Path, data: bytes, force: bool) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +21,9 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.config import Layer
-from evoframe.contract import Design, Record, RunConfig, Score, unit_of
-from evoframe.designs import Job, naming, read_job
+from evoframe.contract import Score, unit_of
+from evoframe.designs import Job, naming, read_job, simulate_job, trace_of
 from evoframe.errors import InputError
-from evoframe.evolution import evaluator_of
 
 __all__ = ["simulate"]
 
@@ -75,7 +73,7 @@ def simulate(
     jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
     if trace is not None:
         _write_trace(trace, jobs)
-    scored_jobs = [(job, _evaluate(job)) for job in jobs]
+    scored_jobs = [(job, simulate_job(job)) for job in jobs]
     bodies = [
         _Body(label, score, job.config.objective.name, unit_of(job.config.objective.component))
         for job, scores in scored_jobs
@@ -95,15 +93,6 @@ class _Body:
     score: Score
     objective: str
     unit: str
-
-
-def _evaluate(job: Job) -> list[Score]:
-    evaluator = evaluator_of(job.config)
-    try:
-        with naming(job.path):
-            return evaluator.evaluate(job.designs, len(job.designs))
-    finally:
-        evaluator.close()
 
 
 def _document(bodies: list[_Body]) -> dict[str, Any]:
@@ -140,22 +129,9 @@ def _write_trace(path: Path, jobs: list[Job]) -> None:
         raise InputError(f"--trace writes the trace of one body, but {len(given)} were given")
     [(job, design)] = given
     with naming(job.path):
-        rows = list(_trace(job.config, design))
+        rows = list(trace_of(job.config.simulator.component, design))
     try:
         with path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-
-
-def _trace(config: RunConfig, design: Design) -> Iterator[list[str]]:
-    """Yield a header and one row a step, the state before the first step in front."""
-    simulator = config.simulator.component
-    record = Record(tracks=simulator.tracks, initial=True)
-    [outcome] = simulator.simulate([design], record)
-    steps, times = outcome.steps.tolist(), outcome.times.tolist()
-    points = [name for name in record.tracks if outcome.tracks[name].shape == (len(steps), 3)]
-    yield ["step", "time", *(f"{name}_{axis}" for name in points for axis in "xyz")]
-    for row, (step, time) in enumerate(zip(steps, times, strict=True)):
-        positions = [value for name in points for value in outcome.tracks[name][row].tolist()]
-        yield [str(step), repr(time), *map(repr, positions)]

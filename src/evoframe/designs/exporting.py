@@ -4,12 +4,33 @@ from __future__ import annotations
 
 import logging
 
-from evoframe.contract import Design, Simulator, SupportsExport
-from evoframe.messages import cause_of
+from evoframe.contract import Design, Export, Simulator, SupportsExport
+from evoframe.designs.sources import Job, naming
+from evoframe.errors import ConfigurationError, InputError
+from evoframe.messages import cause_of, suggestion
 
-__all__ = ["exports"]
+__all__ = ["export_job", "exports"]
 
 _log = logging.getLogger(__name__)
+
+
+def export_job(job: Job, format_: str) -> Export:
+    """Return the only design of a job with its settings, in one of the formats of its simulator.
+
+    Raises:
+        ConfigurationError: The simulator writes no such files, or the format cannot express the settings.
+        InputError: The job has several designs, or the format cannot express the design.
+    """
+    if len(job.designs) != 1:
+        raise InputError(f"{job.path}: holds {len(job.designs)} designs, but a file is written of one")
+    name, simulator = job.config.simulator.name, job.config.simulator.component
+    if not isinstance(simulator, SupportsExport):
+        raise ConfigurationError(f"the simulator '{name}' writes no files of other programs")
+    if format_ not in simulator.formats:
+        hint = suggestion(format_, simulator.formats, "formats")
+        raise ConfigurationError(f"the simulator '{name}' has no format '{format_}'{hint}")
+    with naming(job.path):
+        return simulator.export(job.designs[0], format_)
 
 
 def exports(simulator: Simulator, design: Design) -> dict[str, bytes | None]:

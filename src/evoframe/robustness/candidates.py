@@ -15,9 +15,7 @@ from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_file, shown_name
 from evoframe.registry import Plugins
 from evoframe.robustness.measurement import Candidate
-from evoframe.study.conduct import STUDY_FILE, survey
-from evoframe.study.names import name_of
-from evoframe.study.plan import Planned, read_study, shown
+from evoframe.study import STUDY_FILE, Planned, name_of, read_study, shown, survey
 
 __all__ = ["Candidates", "Part", "champions", "read_candidates"]
 

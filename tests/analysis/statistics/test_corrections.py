@@ -7,7 +7,7 @@ from typing import get_args
 from processes import python
 from statsmodels.stats.multitest import multipletests
 
-from evoframe.analysis.statistics import CORRECTIONS, Correction
+from evoframe.analysis.statistics.corrections import CORRECTIONS, Correction
 
 HEAVY = "matplotlib", "pandas", "plotly", "scikit_posthocs", "scipy", "statsmodels"
 

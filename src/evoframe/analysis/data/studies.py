@@ -15,11 +15,18 @@ from evoframe.documents import differences
 from evoframe.errors import InputError
 from evoframe.files import LARGEST_DOCUMENT, is_file, read_text, shown_name
 from evoframe.registry import Plugins, discover
-from evoframe.study.conduct import STUDY_FILE, survey
-from evoframe.study.gathered import gather, imported_rows
-from evoframe.study.names import called, headings, title_of
-from evoframe.study.plan import read_study, shown
-from evoframe.study.rows import Row
+from evoframe.study import (
+    STUDY_FILE,
+    Row,
+    called,
+    gather,
+    headings,
+    imported_rows,
+    read_study,
+    shown,
+    survey,
+    title_of,
+)
 
 __all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
 
@@ -153,7 +160,7 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         raise InputError(f"{directory}: is no study's directory: there is no {STUDY_FILE}")
     study = read_study(directory / STUDY_FILE, (), plugins or discover())
     imported = imported_rows(study, directory)
-    statuses = survey(study, directory, imported)
+    statuses = survey(study, directory, imported, rows=True)
     rows = gather(statuses, imported)
     units = {unit_of(cell.config.objective.component) for cell in study.cells}
     first, *others = [cell.config.simulation() for cell in study.cells]

@@ -11,7 +11,7 @@ from evoframe.analysis.data.studies import View, Yardstick
 from evoframe.analysis.data.units import NAMES, factor_of
 from evoframe.analysis.statistics.groups import FEWEST
 from evoframe.record import Run
-from evoframe.study.rows import score_curve
+from evoframe.study import score_curve
 
 __all__ = ["Line", "lines_of_run", "lines_of_view"]
 

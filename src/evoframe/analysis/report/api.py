@@ -16,7 +16,7 @@ from evoframe.files import is_file
 from evoframe.record import CONFIG_FILE, Report, Run, open_run
 from evoframe.registry import Plugins, discover
 from evoframe.robustness import SETTING_FILE
-from evoframe.study.conduct import STUDY_FILE
+from evoframe.study import STUDY_FILE
 
 __all__ = ["Report", "report"]
 

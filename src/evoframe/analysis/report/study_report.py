@@ -33,7 +33,7 @@ from evoframe.analysis.statistics.words import conclusion
 from evoframe.errors import InputError
 from evoframe.record import open_run
 from evoframe.registry import Plugins
-from evoframe.study.conduct import STUDY_FILE
+from evoframe.study import STUDY_FILE
 
 __all__ = ["draft_of_study"]
 
