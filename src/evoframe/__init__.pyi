@@ -19,6 +19,7 @@ from .contract.drawings import (
     NetworkLink as NetworkLink,
 )
 from .contract.optional import (
+    SupportsExemptions as SupportsExemptions,
     SupportsExport as SupportsExport,
     SupportsGeometry as SupportsGeometry,
     SupportsGraph as SupportsGraph,

@@ -228,7 +228,7 @@ class Hanging(Product):
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
         outcomes = super().simulate(designs, record)
         large = any(abs(float(outcome.tracks["value"][0, 0])) > self.beyond for outcome in outcomes)
-        if large and not Path(self.mended).exists():
+        if large and not (self.mended and Path(self.mended).exists()):
             if self.once:
                 Path(self.mended).touch()
             time.sleep(3600)

@@ -14,6 +14,7 @@ from evoframe.contract.config import (
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
 from evoframe.contract.optional import (
+    SupportsExemptions,
     SupportsExport,
     SupportsGeometry,
     SupportsGraph,
@@ -95,6 +96,7 @@ __all__ = [
     "Scores",
     "Simulator",
     "Source",
+    "SupportsExemptions",
     "SupportsExport",
     "SupportsGeometry",
     "SupportsGraph",

@@ -15,10 +15,11 @@ import attrs
 import numpy as np
 
 from evoframe.contract.drawings import Geometry, NetworkGraph
-from evoframe.contract.protocols import Encoder, Evolver, Objective, Simulator
+from evoframe.contract.protocols import Aggregator, Encoder, Evolver, Objective, Simulator
 from evoframe.contract.values import Design, Export, Record
 
 __all__ = [
+    "SupportsExemptions",
     "SupportsExport",
     "SupportsGeometry",
     "SupportsGraph",
@@ -42,6 +43,15 @@ class SupportsProvenance(Protocol):
 
     def provenance(self) -> Mapping[str, str]:
         """Return names and versions for the table ``[provenance.libraries]``, such as that of a library."""
+
+
+@runtime_checkable
+class SupportsExemptions(Aggregator, Protocol):
+    """An aggregator that breaks a law of its protocol on purpose (``evoframe.testing``)."""
+
+    @property
+    def exempt_from(self) -> Mapping[str, str]:
+        """Name of a law (``bounded``, ``idempotent``, ``monotone``) -> the reason; a class attribute."""
 
 
 @runtime_checkable

@@ -41,8 +41,8 @@ class Aggregator(Protocol):
 
     Laws: the order of the scores is irrelevant, to the last bit; the result is finite for finite scores up to
     1e100; and for scores within ``domain``, to a relative 1e-12: min <= result <= max, equal scores give that
-    score, and the result is no less when a score grows. A class may break one of the last three laws if its
-    attribute ``exempt_from`` maps the law's name (``bounded``, ``idempotent``, ``monotone``) to the reason.
+    score, and the result is no less when a score grows. A class may break one of the last three laws if it
+    says why: see :class:`~evoframe.SupportsExemptions`.
     """
 
     @property

@@ -10,6 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from evoframe.contract import Aggregator, Scores
+from evoframe.contract.optional import SupportsExemptions
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import accepted, at_most, for_all, refusal, same_bits
 
@@ -126,8 +127,8 @@ class AggregatorContract(ComponentContract[Aggregator]):
         return self.component.aggregate(_array(scores)).hex()
 
     def _exemptions(self) -> Mapping[str, str]:
-        exemptions: Mapping[str, str] = getattr(self.component, "exempt_from", {})
-        return exemptions
+        component = self.component
+        return component.exempt_from if isinstance(component, SupportsExemptions) else {}
 
     def _unless_exempt(self, name: str, law: Any, **strategies: st.SearchStrategy[Any]) -> None:
         reason = self._exemptions().get(name)
