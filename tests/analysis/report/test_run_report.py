@@ -42,7 +42,7 @@ def test_its_words_count_turns_and_pairs(made: Run, plugins: Plugins) -> None:
     draft = draft_of_run(made, plugins)
     pairs = sum(row["pairs"] for row in made.workload())
     assert draft.words == f"r: {draft.lead}\n"
-    assert draft.lead.endswith(f"; {made.last_turn:,} turns, {pairs:,} pairs; finished")
+    assert draft.lead.endswith(f"; {made.last_turn():,} turns, {pairs:,} pairs; finished")
 
 
 def test_its_page_begins_with_the_champion_and_ends_with_the_configuration(
