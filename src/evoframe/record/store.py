@@ -110,13 +110,13 @@ class Store:
 
     def tables(self) -> dict[str, Table]:
         """Return all that is saved, as it would be read back; the store must be open."""
-        return {
-            name: Table(
-                tuple(column[0] for column in self._database.execute(f'SELECT * FROM "{name}"').description),  # noqa: S608 - one of ours
-                [row for _, row in sorted(self._rows.get(name, {}).items())],
-            )
-            for name in (*CHAINED, *SINGLE)
-        }
+        tables = {}
+        for name in (*CHAINED, *SINGLE):
+            with self._writing():
+                none = self._database.execute(f'SELECT * FROM "{name}" LIMIT 0')  # noqa: S608 - one of ours
+            columns = tuple(column[0] for column in none.description)
+            tables[name] = Table(columns, [row for _, row in sorted(self._rows.get(name, {}).items())])
+        return tables
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
         """Save a turn and the state after it, both or neither; the files of a new champion may follow later.

@@ -126,6 +126,7 @@ def reopen(
     with released_on_error(lock):
         if not run.outdated():
             return _reopened(run, lock, overrides, plugins, allowed=allow_different_versions)
+        run.close()
         with open_run(run.directory) as newer:  # another process was at it, a moment ago
             return _reopened(newer, lock, overrides, plugins, allowed=allow_different_versions)
 
