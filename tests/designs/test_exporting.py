@@ -10,17 +10,17 @@ import pytest
 import toys
 
 from evoframe import Design, Export, InputError
-from evoframe.designs import exports
+from evoframe.designs import export_all
 
 PAIR = Design({"a": np.array([3.0]), "b": np.array([-2.0])})
 
 
 def test_a_simulator_without_formats_gives_no_files() -> None:
-    assert exports(toys.Product(), PAIR) == {}
+    assert export_all(toys.Product(), PAIR) == {}
 
 
 def test_every_format_gives_the_file_that_its_simulator_reads(tmp_path: Path) -> None:
-    files = exports(toys.Varied(gain=2.0), PAIR)
+    files = export_all(toys.Varied(gain=2.0), PAIR)
     assert files.keys() == {"toy", "txt"}
     assert files["toy"] is not None
     (tmp_path / "champion.toy").write_bytes(files["toy"])
@@ -29,7 +29,7 @@ def test_every_format_gives_the_file_that_its_simulator_reads(tmp_path: Path) ->
 
 
 def test_the_same_design_gives_the_same_bytes() -> None:
-    assert exports(toys.Varied(), PAIR) == exports(toys.Varied(), Design(PAIR.roles))
+    assert export_all(toys.Varied(), PAIR) == export_all(toys.Varied(), Design(PAIR.roles))
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def test_one_that_fails_is_no_file_and_the_others_are(
         return export(self, design, format_)
 
     monkeypatch.setattr(toys.Varied, "export", fails)
-    files = exports(toys.Varied(), PAIR)
+    files = export_all(toys.Varied(), PAIR)
     assert files["txt"] is None
     assert files["toy"] is not None
     assert f"there is no txt file of the champion: {words}" in caplog.text
@@ -55,7 +55,7 @@ def test_one_that_fails_is_no_file_and_the_others_are(
 
 def test_what_a_format_leaves_out_is_said(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.INFO)
-    exports(toys.Varied(gain=2.0), PAIR)
+    export_all(toys.Varied(gain=2.0), PAIR)
     assert [record.getMessage() for record in caplog.records] == [
         "the txt file of the champion leaves out: gain",
         "the txt file of the champion leaves out: limit",

@@ -15,7 +15,7 @@ from measuring import body, measure, setting
 from evoframe import Design, Divergence, InputError, WorkerError
 from evoframe.contract.optional import SupportsPublished, SupportsRandomControllers
 from evoframe.errors import ComponentError
-from evoframe.robustness.measurement import Bench, controlled, digest_of
+from evoframe.robustness.measurement import Bench, digest_of, draw_controller
 from evoframe_executors import Processes, Threads
 
 numbers = st.lists(st.floats(0.5, 4.0), min_size=1, max_size=5, unique=True)
@@ -111,7 +111,7 @@ class TestSimulator:
                 return design.roles
 
         with pytest.raises(ComponentError, match=r"^simulator: drew a controller that is no Design, but d"):
-            controlled(Careless(), body(1.0), 1, 0)
+            draw_controller(Careless(), body(1.0), 1, 0)
 
     def test_that_fails_is_named_with_body_and_controllers(self) -> None:
         @attrs.frozen

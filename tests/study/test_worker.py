@@ -12,7 +12,7 @@ import toys
 
 import evoframe
 from evoframe import Plugins, RunConfig, assemble, load_run
-from evoframe.config.resolve import resolved
+from evoframe.config.resolve import resolve_layers
 from evoframe.errors import LockedError, NotEmptyError
 from evoframe.files.locks import locked
 from evoframe.messages import full_text
@@ -116,7 +116,7 @@ def test_turns_are_told_not_more_often_than_anybody_looks(
     told: list[tuple[int, float | None]] = []
     teller = _Teller(Talk(lambda turn, best: told.append((turn, best)), lambda: False))
     made, best = [], None
-    for turn in assemble(resolved(order.layers, order.label, toy_plugins)):
+    for turn in assemble(resolve_layers(order.layers, order.label, toy_plugins)):
         teller.evoframe_turn_finished(turn)
         best = turn.best_pair.score if turn.best_pair else best
         made.append((turn.index, best))

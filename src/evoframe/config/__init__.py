@@ -1,7 +1,7 @@
 """Configurations: presets, files and overrides become one checked value."""
 
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
-from evoframe.config.resolve import load_config, named_simulator, resolved
+from evoframe.config.resolve import load_config, named_simulator, resolve_layers
 
 __all__ = [
     "Layer",
@@ -13,5 +13,5 @@ __all__ = [
     "named_simulator",
     "preset_names",
     "read_layers",
-    "resolved",
+    "resolve_layers",
 ]

@@ -27,7 +27,7 @@ from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import found, suggestion
 from evoframe.registry import KINDS, Offer, Plugins, discover
 
-__all__ = ["load_config", "named_simulator", "resolved"]
+__all__ = ["load_config", "named_simulator", "resolve_layers"]
 
 C = TypeVar("C")
 _RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
@@ -52,10 +52,10 @@ def load_config(
     """
     if not isinstance(source, str | Path):
         raise TypeError(f"a configuration is named by a preset or a file, not by {type(source).__name__}")
-    return resolved(read_layers(source, overrides), Path(source).stem, plugins or discover())
+    return resolve_layers(read_layers(source, overrides), Path(source).stem, plugins or discover())
 
 
-def resolved(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
+def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
     """Resolve and check a configuration that was read.
 
     Args:

@@ -1,21 +1,21 @@
 """Designs that a person names: reading, verifying and exporting them."""
 
-from evoframe.designs.exporting import export_job, exports
+from evoframe.designs.exporting import export_all, export_job
 from evoframe.designs.simulating import simulate_job, trace_of
 from evoframe.designs.sources import DEFAULT_PRESET, Job, naming, read_job
-from evoframe.designs.verifying import keep_of_job, verified, verify, verify_job
+from evoframe.designs.verifying import keep_of_job, verify, verify_designs, verify_job
 
 __all__ = [
     "DEFAULT_PRESET",
     "Job",
+    "export_all",
     "export_job",
-    "exports",
     "keep_of_job",
     "naming",
     "read_job",
     "simulate_job",
     "trace_of",
-    "verified",
     "verify",
+    "verify_designs",
     "verify_job",
 ]

@@ -9,7 +9,7 @@ from evoframe.designs.sources import Job, naming
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.messages import cause_of, suggestion
 
-__all__ = ["export_job", "exports"]
+__all__ = ["export_all", "export_job"]
 
 _log = logging.getLogger(__name__)
 
@@ -33,7 +33,7 @@ def export_job(job: Job, format_: str) -> Export:
         return simulator.export(job.designs[0], format_)
 
 
-def exports(simulator: Simulator, design: Design) -> dict[str, bytes | None]:
+def export_all(simulator: Simulator, design: Design) -> dict[str, bytes | None]:
     """Return *design* in every format of *simulator*, if it has any.
 
     Returns:

@@ -8,7 +8,15 @@ from pathlib import Path
 
 import attrs
 
-from evoframe.config import Layer, Layers, layers_in, load_config, named_simulator, read_layers, resolved
+from evoframe.config import (
+    Layer,
+    Layers,
+    layers_in,
+    load_config,
+    named_simulator,
+    read_layers,
+    resolve_layers,
+)
 from evoframe.contract import Design, RunConfig, SupportsReading, SupportsSettings
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_directory
@@ -91,7 +99,7 @@ def naming(path: Path) -> Iterator[None]:
 def _of_run(run: Run, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
     champion, path = run.champion(), run.directory
     own = read_layers(preset) if preset else layers_in(run.config, str(path / CONFIG_FILE))
-    config = resolved(own.under(overrides), Path(preset or CONFIG_FILE).stem, plugins)
+    config = resolve_layers(own.under(overrides), Path(preset or CONFIG_FILE).stem, plugins)
     _check_roles(path, champion.design, config)
     score = champion.score if preset is None and _changes_nothing(own, overrides) else None
     return Job(path, config, (str(path),), (champion.design,), run, score)
@@ -104,7 +112,7 @@ def _of_champion(path: Path, preset: str | None, overrides: Sequence[str | Layer
         if preset
         else read_layers(DEFAULT_PRESET, [Layer(str(path), champion.simulation)])
     )
-    config = resolved(own.under(overrides), Path(preset or DEFAULT_PRESET).stem, plugins)
+    config = resolve_layers(own.under(overrides), Path(preset or DEFAULT_PRESET).stem, plugins)
     _check_roles(path, champion.design, config)
     score = champion.score if preset is None and _changes_nothing(own, overrides) else None
     return Job(path, config, (path.name,), (champion.design,), score=score)

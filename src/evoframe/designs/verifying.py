@@ -20,7 +20,7 @@ from evoframe.contract import (
 )
 from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import ConfigurationError
-from evoframe.evolution import simulated
+from evoframe.evolution import score_designs
 from evoframe.record import UNCHANGED, Finding, Run, Verification, keep_verification
 from evoframe.registry import Plugins, discover
 
@@ -70,7 +70,7 @@ def verify_job(job: Job) -> list[Verification]:
         RunError: The verification cannot be made.
     """
     with naming(job.path):
-        return verified(job.config, job.designs, job.score)
+        return verify_designs(job.config, job.designs, job.score)
 
 
 def keep_of_job(job: Job, verifications: Sequence[Verification]) -> None:
@@ -84,7 +84,9 @@ def keep_of_job(job: Job, verifications: Sequence[Verification]) -> None:
         keep_verification(job.run.directory, verification)
 
 
-def verified(config: RunConfig, designs: Sequence[Design], score: float | None = None) -> list[Verification]:
+def verify_designs(
+    config: RunConfig, designs: Sequence[Design], score: float | None = None
+) -> list[Verification]:
     """Return what becomes of designs in all variants of a configuration's simulator.
 
     Args:
@@ -140,5 +142,5 @@ def verify_design(
 
 
 def _score(objective: Objective, variant: Variant) -> Score:
-    [score] = simulated(variant.simulator, [variant.design], variant.record, objective)
+    [score] = score_designs(variant.simulator, [variant.design], variant.record, objective)
     return score

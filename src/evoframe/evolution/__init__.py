@@ -2,7 +2,7 @@
 
 from evoframe.evolution.assembly import assemble, evaluator_of
 from evoframe.evolution.coevolution import Coevolution, first_meetings
-from evoframe.evolution.evaluation import Evaluator, simulated
+from evoframe.evolution.evaluation import Evaluator, score_designs
 from evoframe.evolution.population import Population
 from evoframe.evolution.randomness import stream
 
@@ -13,6 +13,6 @@ __all__ = [
     "assemble",
     "evaluator_of",
     "first_meetings",
-    "simulated",
+    "score_designs",
     "stream",
 ]

@@ -13,7 +13,7 @@ import numpy as np
 from evoframe.contract import Design, ExecutorRun, Objective, Outcome, Record, Score, Simulator, blaming
 from evoframe.errors import ComponentError, WorkerError
 
-__all__ = ["Evaluator", "simulated"]
+__all__ = ["Evaluator", "score_designs"]
 
 _LARGEST_BATCH = 4  # as many share the cost of a call, and what the solver prepares for their common body
 _BATCHES_PER_WORKER = 2  # of what is left: the last ones are small, so that all workers end together
@@ -113,13 +113,15 @@ class _Simulation:
 
     def __call__(self, batch: Mapping[bytes, Design]) -> dict[bytes, Score]:
         try:
-            scores = simulated(self.simulator, list(batch.values()), self.objective.record, self.objective)
+            scores = score_designs(
+                self.simulator, list(batch.values()), self.objective.record, self.objective
+            )
         except ComponentError as error:
             raise attrs.evolve(error, keys=tuple(batch)) from error
         return dict(zip(batch, scores, strict=True))
 
 
-def simulated(
+def score_designs(
     simulator: Simulator, designs: Sequence[Design], record: Record, objective: Objective
 ) -> list[Score]:
     """Simulate *designs* and return what *objective* gives for each, without looking for repeats.

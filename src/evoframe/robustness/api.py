@@ -107,14 +107,14 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
 
 
 def measure(
-    candidates: Candidates, setting: Setting, told: Callable[[int], None] = lambda _: None
+    candidates: Candidates, setting: Setting, on_progress: Callable[[int], None] = lambda _: None
 ) -> Robustness:
     """Simulate all bodies with all controllers.
 
     Args:
         candidates: The bodies, and what simulates them.
         setting: Of the same bodies.
-        told: Is told now and then how many more simulations are done.
+        on_progress: Called now and then with the number of simulations done since the last time.
 
     Raises:
         InputError: The simulator cannot simulate a body.
@@ -125,7 +125,7 @@ def measure(
     try:
         designs = [body.design for body in candidates.bodies]
         bench = Bench(_simulator(candidates), config.objective.component, workers)
-        return bench.measure(setting, designs, told)
+        return bench.measure(setting, designs, on_progress)
     finally:
         workers.close()
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from evoframe.contract import Design, ExecutorRun, Objective, Score, SupportsRandomControllers, blaming
 from evoframe.errors import ComponentError, ConfigurationError, InputError, WorkerError
-from evoframe.evolution import simulated, stream
+from evoframe.evolution import score_designs, stream
 
 __all__ = [
     "Bench",
@@ -26,8 +26,8 @@ __all__ = [
     "Divergence",
     "Robustness",
     "Setting",
-    "controlled",
     "digest_of",
+    "draw_controller",
 ]
 
 _BATCH = 8  # controllers of one body: as many share what the solver prepares for it
@@ -140,7 +140,9 @@ class Robustness:
         return sum(divergence.body in columns for divergence in self.diverged)
 
 
-def controlled(simulator: SupportsRandomControllers, design: Design, seed: int, controller: int) -> Design:
+def draw_controller(
+    simulator: SupportsRandomControllers, design: Design, seed: int, controller: int
+) -> Design:
     """Return a body with one of the controllers of a seed, whichever was drawn before.
 
     Raises:
@@ -155,7 +157,7 @@ def controlled(simulator: SupportsRandomControllers, design: Design, seed: int, 
 
 def digest_of(simulator: SupportsRandomControllers, design: Design) -> str:
     """Return the digest of what remains of a design whatever controller is drawn for it."""
-    drawn = controlled(simulator, design, 0, 0)
+    drawn = draw_controller(simulator, design, 0, 0)
     digest = hashlib.sha256()
     for role, array in sorted(design.roles.items()):
         if np.array_equal(array, drawn.roles.get(role, np.empty(0))):
@@ -179,14 +181,14 @@ class Bench:
     workers: ExecutorRun
 
     def measure(
-        self, setting: Setting, designs: Sequence[Design], told: Callable[[int], None] = lambda _: None
+        self, setting: Setting, designs: Sequence[Design], on_progress: Callable[[int], None] = lambda _: None
     ) -> Robustness:
         """Simulate bodies with the same random controllers.
 
         Args:
             setting: What is measured.
             designs: A design for each of its bodies.
-            told: Is told now and then how many more simulations are done.
+            on_progress: Called now and then with the number of simulations done since the last time.
 
         Raises:
             InputError: The simulator cannot simulate a body.
@@ -200,7 +202,7 @@ class Bench:
                     scores[controller, batch.body] = score.value
                 else:
                     diverged.append(Divergence(controller, batch.body, score.diverged_at))
-            told(len(found))
+            on_progress(len(found))
         scores.setflags(write=False)
         diverged.sort(key=lambda divergence: (divergence.controller, divergence.body))
         return Robustness(setting, scores, tuple(diverged))
@@ -244,9 +246,10 @@ class _Work:
     def __call__(self, batch: _Batch) -> list[Score]:
         try:
             designs = [
-                controlled(self.simulator, batch.design, self.seed, number) for number in batch.controllers
+                draw_controller(self.simulator, batch.design, self.seed, number)
+                for number in batch.controllers
             ]
-            return simulated(self.simulator, designs, self.objective.record, self.objective)
+            return score_designs(self.simulator, designs, self.objective.record, self.objective)
         except (ConfigurationError, InputError) as error:
             raise type(error)(f"{batch.label}: {error}") from error
         except ComponentError as error:

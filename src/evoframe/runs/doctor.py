@@ -15,7 +15,7 @@ from evoframe.config import load_config
 from evoframe.contract import RunConfig
 from evoframe.documents import differences
 from evoframe.errors import EvoframeError, InputError
-from evoframe.evolution import assemble, simulated
+from evoframe.evolution import assemble, score_designs
 from evoframe.files import LOCK_FILE, acquire_lock
 from evoframe.messages import full_text
 from evoframe.record import CHAINED, CHAMPION_FILE, SINGLE, Run, open_unchecked, provenance_of
@@ -208,7 +208,7 @@ def _champion(run: Run, config: RunConfig) -> str:
     if run.champion_document() is None:
         return "there is none yet"
     champion, objective = run.champion(), config.objective.component
-    [score] = simulated(config.simulator.component, [champion.design], objective.record, objective)
+    [score] = score_designs(config.simulator.component, [champion.design], objective.record, objective)
     if score.value != champion.score:
         now = f"diverges at step {score.diverged_at}" if score.value is None else f"scores {score.value!r}"
         raise InputError(f"scored {champion.score!r} in its run, but now {now}")

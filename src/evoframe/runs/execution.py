@@ -11,7 +11,7 @@ from typing import Any
 import attrs
 
 from evoframe.contract import RunConfig, SupportsVariants, Turn
-from evoframe.designs import verified
+from evoframe.designs import verify_designs
 from evoframe.errors import ComponentError, RunError
 from evoframe.evolution import Coevolution
 from evoframe.files import locked
@@ -128,7 +128,7 @@ def verify_champion(config: RunConfig, run: Run) -> Verification | None:
     with locked(run.directory):
         try:
             champion = run.champion()
-            [verification] = verified(config, [champion.design], champion.score)
+            [verification] = verify_designs(config, [champion.design], champion.score)
             keep_verification(run.directory, verification)
         except Exception as error:
             complete = f"{run.directory}: the run is complete and saved"

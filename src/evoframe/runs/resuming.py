@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from evoframe.config import Layer, layers_in, layers_of, resolved
+from evoframe.config import Layer, layers_in, layers_of, resolve_layers
 from evoframe.contract import RunConfig, SupportsVariants
 from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
@@ -24,7 +24,7 @@ from evoframe.record import (
 )
 from evoframe.registry import Plugins, discover
 from evoframe.runs.execution import Execution, verify_champion
-from evoframe.runs.starting import opened_store
+from evoframe.runs.starting import open_store
 
 __all__ = [
     "configuration_of",
@@ -143,7 +143,7 @@ def _reopened(
         if run.begun:
             restore(coevolution, run)
         run.close()  # whoever reads keeps others from writing
-        store = opened_store(run.directory, config, lock)
+        store = open_store(run.directory, config, lock)
         if run.begun:
             _go_on(store, run, changes)
         else:  # killed before its first transaction
@@ -171,8 +171,8 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
     """
     path = run.directory / CONFIG_FILE
     layers = layers_in(run.config, str(path))
-    config = resolved(layers.under(overrides), path.stem, plugins)
-    began = run.configuration() if run.begun else resolved(layers, path.stem, plugins).deciding()
+    config = resolve_layers(layers.under(overrides), path.stem, plugins)
+    began = run.configuration() if run.begun else resolve_layers(layers, path.stem, plugins).deciding()
     if others := differences(began, config.deciding()):
         raise ConfigurationError(
             _listed(f"{run.directory}: the configuration is not that of the run", others)

@@ -12,7 +12,7 @@ import tomli_w
 
 from evoframe.config import layers_of, load_config
 from evoframe.contract import RunConfig
-from evoframe.designs import exports
+from evoframe.designs import export_all
 from evoframe.documents import as_read
 from evoframe.errors import InputError, NotEmptyError, OccupiedError
 from evoframe.evolution import assemble
@@ -21,7 +21,7 @@ from evoframe.record import CONFIG_FILE, Run, Store, open_run, provenance_of
 from evoframe.registry import Plugins, discover
 from evoframe.runs.execution import Execution
 
-__all__ = ["opened_store", "prepare", "run"]
+__all__ = ["open_store", "prepare", "run"]
 
 
 def run(
@@ -97,18 +97,18 @@ def _new_store(directory: Path, config: RunConfig, tables: Mapping[str, Any]) ->
     with released_on_error(lock):
         _refuse_occupied(directory)  # again: another process may have been faster
         write_atomically(directory / CONFIG_FILE, tomli_w.dumps(tables).encode())
-        store = opened_store(directory, config, lock)
+        store = open_store(directory, config, lock)
         store.begin(list(config.populations), config.deciding())
         return store
 
 
-def opened_store(directory: Path, config: RunConfig, lock: Lock) -> Store:
+def open_store(directory: Path, config: RunConfig, lock: Lock) -> Store:
     """Return the store of a run's directory, whose database is new or has what was saved so far.
 
     Raises:
         InputError: It cannot be written.
     """
-    export = functools.partial(exports, config.simulator.component)
+    export = functools.partial(export_all, config.simulator.component)
     return Store.open(directory, config.simulation(), lock, export)
 
 

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.config import Layer, Layers, layer_of, read_layers, resolved
+from evoframe.config import Layer, Layers, layer_of, read_layers, resolve_layers
 from evoframe.contract import RunConfig
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError
@@ -185,7 +185,9 @@ def read_study(
     cells = []
     for values in itertools.product(*grid.values()):
         settings = tuple(zip(grid, values, strict=True))
-        cells.append(Cell(settings, resolved(layers.under(_layers(settings, f"{origin}: ")), label, plugins)))
+        cells.append(
+            Cell(settings, resolve_layers(layers.under(_layers(settings, f"{origin}: ")), label, plugins))
+        )
     return Study(layers, label, grid, runs, tuple(cells))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import attrs
 
-from evoframe.config import Layer, Layers, layer_of, resolved
+from evoframe.config import Layer, Layers, layer_of, resolve_layers
 from evoframe.contract import Turn
 from evoframe.errors import NotEmptyError, OccupiedError
 from evoframe.record import CONFIG_FILE, Run, open_run
@@ -65,7 +65,7 @@ def perform(order: Order, talk: Talk) -> Run | None:
         EvoframeError: It cannot be made, cannot go on, or cannot be verified.
     """
     plugins = discover(order.modules)
-    executor: Any = type(resolved(order.layers, order.label, plugins).executor.component)
+    executor: Any = type(resolve_layers(order.layers, order.label, plugins).executor.component)
     spreads = "workers" in attrs.fields_dict(executor)
     # One core for each run: the others have runs of their own.
     alone = [layer_of("one worker for each run", "executor.workers", 1)] if spreads else []
@@ -88,7 +88,7 @@ def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution 
     """Return a new run; ``None`` if there is one already."""
     if (order.directory / CONFIG_FILE).exists():
         return None
-    config = resolved(order.layers.under(alone), order.label, plugins)
+    config = resolve_layers(order.layers.under(alone), order.label, plugins)
     with with_remedy():
         try:
             return prepare(config, plugins, order.directory)
