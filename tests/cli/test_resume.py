@@ -180,3 +180,9 @@ def test_processes_cannot_import_a_plugin_of_a_file(evoframe: Evoframe, toy: lis
     assert refused.returncode == 1
     assert "Error: executor 'processes': a worker does not know what it shall do: Mod" in refused.stderr
     assert "Traceback" not in refused.stderr
+
+
+def test_a_finished_run_needs_no_plugin_to_be_said_to_be_finished(evoframe: Evoframe, toy: list[str]) -> None:
+    assert evoframe("run", *toy, "toy.toml", "--set", "simulator=toy-varied", "--out", "r").returncode == 0
+    again = evoframe("resume", "r")
+    assert (again.returncode, again.stderr) == (0, "r: is finished\n")

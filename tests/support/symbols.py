@@ -27,7 +27,7 @@ class Symbols:
 def _tool(name: str) -> str:
     path = shutil.which(name)
     if path is None:
-        pytest.skip(f"{name} is not installed")
+        pytest.fail(f"{name} is not installed; it comes with the compiler")
     return path
 
 

@@ -53,9 +53,11 @@ def resume(
         if not is_finished(run):
             execution = reopen(run, settings, plugins, allow_different_versions=allow_different_versions)
         else:
-            config = configuration_of(run, settings, plugins)  # refuses what would have been another run
+            unverified = run.verification() is None
+            if settings or unverified:  # also to refuse what would have been another run
+                config = configuration_of(run, settings, plugins)
             click.echo(f"{directory}: is finished", err=True)
-            if run.verification() is None:
+            if unverified:
                 run.read_all()
                 show_end(ctx, config, run)
             return

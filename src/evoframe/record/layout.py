@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-__all__ = ["CHAMPION_FILE", "CONFIG_FILE", "DATABASE_FILE", "RUN_FORMAT", "VERIFICATION_FILE", "schema"]
+__all__ = [
+    "CHAMPION_FILE",
+    "CONFIG_FILE",
+    "DATABASE_FILE",
+    "RUN_FORMAT",
+    "SETTLED",
+    "VERIFICATION_FILE",
+    "schema",
+]
 
 RUN_FORMAT = 2
 """Version of the run directory; champion.json has its own."""
@@ -12,6 +20,9 @@ RUN_FORMAT = 2
 CHAMPION_FILE = "champion.json"
 CONFIG_FILE = "config.toml"
 DATABASE_FILE = "run.db"
+
+SETTLED = frozenset({"format", "configuration"})
+"""Keys of ``meta`` that are there from the beginning; the others are the figures of a finished run."""
 
 VERIFICATION_FILE = "verification.json"
 """Verification of the champion."""

@@ -15,12 +15,10 @@ from evoframe.files import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text
 from evoframe.record.champion import Champion, champion_from_json
 from evoframe.record.checksums import CHAINED, SINGLE
 from evoframe.record.database import Database, Table
-from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, DATABASE_FILE, VERIFICATION_FILE
+from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, DATABASE_FILE, SETTLED, VERIFICATION_FILE
 from evoframe.record.verification import Verification, verification_from_json
 
 __all__ = ["Report", "Run", "load_run", "open_run", "open_unchecked"]
-
-_SETTLED = ("format", "configuration")  # keys of meta that stand there from the beginning
 
 
 @attrs.frozen
@@ -79,7 +77,7 @@ class Run:
 
     def summary(self) -> dict[str, Any]:
         """Return the final figures; none as long as the run is not finished."""
-        return {key: value for key, value in self._documents("meta").items() if key not in _SETTLED}
+        return {key: value for key, value in self._documents("meta").items() if key not in SETTLED}
 
     def finished(self) -> bool:
         """Return whether the run has come to its end."""

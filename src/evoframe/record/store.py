@@ -19,7 +19,7 @@ from evoframe.files import Lock, json_text, remove, write_atomically, write_json
 from evoframe.record.champion import champion_document
 from evoframe.record.checksums import CHAINED, SINGLE, Checksums
 from evoframe.record.database import Table
-from evoframe.record.layout import CHAMPION_FILE, DATABASE_FILE, RUN_FORMAT, schema
+from evoframe.record.layout import CHAMPION_FILE, DATABASE_FILE, RUN_FORMAT, SETTLED, schema
 
 __all__ = ["Store"]
 
@@ -30,8 +30,6 @@ _log = logging.getLogger(__name__)
 # The way from and to the write-ahead log is one write of one page. A journal of it, left by a kill, could be
 # undone by nobody who may only read, and names files that whoever undoes it touches.
 _WITHOUT_A_JOURNAL = "PRAGMA journal_mode = MEMORY"
-
-_SETTLED = 2  # rows of meta that stand there from the beginning: format and configuration
 
 _SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
 
@@ -106,7 +104,7 @@ class Store:
     @property
     def finished(self) -> bool:
         """Whether the final figures are noted."""
-        return len(self._rows["meta"]) > _SETTLED
+        return bool(self._rows["meta"].keys() - SETTLED)
 
     def tables(self) -> dict[str, Table]:
         """Return all that is saved, as it would be read back; the store must be open."""
