@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
@@ -22,15 +23,57 @@ __all__ = [
 
 
 class EvoframeError(Exception):
-    """Base of all errors that evoframe raises on purpose; the command line shows only their text."""
+    """Base of all errors that evoframe raises on purpose; the command line prints only their text.
+
+    The text is ``source: key: problem``, without the parts that are empty.
+
+    Attributes:
+        problem: Value found, value expected, and what to do.
+        source: File, directory or command-line option that the error is about.
+        key: Dotted key, table or element in it, such as ``populations.controller.size``.
+    """
+
+    source: str = ""
+    key: str = ""
+
+    def __init__(self, problem: str = "", *, source: object = "", key: str = "") -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.source = str(source)
+        self.key = key
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in (self.source, self.key, self.problem) if part)
 
 
 class ConfigurationError(EvoframeError):
-    """A configuration, or an option of a component, that cannot be accepted.
+    """A configuration, or an option of a component, that is not valid.
 
-    A component raises it from ``check``-like methods with a message in the user's words; the core adds the
-    file and the key.
+    Components raise it from methods such as ``check`` with a problem only; the core adds source and key.
+
+    Args:
+        problem: As for :class:`EvoframeError`, as are *source* and *key*.
+        faults: The errors that this one reports together; the text lists them.
     """
+
+    def __init__(
+        self,
+        problem: str = "",
+        *,
+        source: object = "",
+        key: str = "",
+        faults: Sequence[ConfigurationError] = (),
+    ) -> None:
+        super().__init__(problem, source=source, key=key)
+        self._faults = tuple(faults)
+
+    @property
+    def faults(self) -> tuple[ConfigurationError, ...]:
+        """The errors reported together; the error itself if it is the only one."""
+        return self._faults or (self,)
+
+    def __str__(self) -> str:
+        return "\n  ".join([super().__str__(), *map(str, self._faults)])
 
 
 class InputError(EvoframeError):
@@ -84,16 +127,14 @@ class ComponentError(RunError):
 
 
 class WorkerError(RunError):
-    """A worker of an executor was lost with what it was doing.
+    """A worker of an executor was lost, together with the item that it was processing.
 
     Attributes:
-        problem: What happened, as the end of a sentence about what it was doing.
-        item: What it was doing.
+        item: The item that it was processing.
     """
 
     def __init__(self, problem: str, item: Any) -> None:
         super().__init__(problem)
-        self.problem = problem
         self.item = item
 
 

@@ -72,7 +72,7 @@ def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
     reading.refuse_missing(usable, settings.require)
     config = reading.config(usable, settings, label)
     if config is None:
-        raise ConfigurationError(_listed(reading.faults, layers))
+        raise _joined(reading.faults, layers)
     return config
 
 
@@ -107,14 +107,16 @@ def named_simulator(
     return None
 
 
-def _listed(faults: list[Fault], layers: Layers) -> str:
-    lines = [
-        f"{layers.origin(fault.path, fault.involves)}: {'.'.join(fault.path)}: {fault.message}"
+def _joined(faults: list[Fault], layers: Layers) -> ConfigurationError:
+    errors = [
+        ConfigurationError(
+            fault.message, source=layers.origin(fault.path, fault.involves), key=".".join(fault.path)
+        )
         for fault in faults
     ]
-    if len(lines) == 1:
-        return lines[0]
-    return "\n  ".join([f"{len(lines)} faults in the configuration:", *lines])
+    if len(errors) == 1:
+        return errors[0]
+    return ConfigurationError(f"{len(errors)} faults in the configuration:", faults=errors)
 
 
 @attrs.frozen
