@@ -9,7 +9,7 @@ from typing import Any
 
 from evoframe.errors import EvoframeError
 
-__all__ = ["cause_of", "found", "full_text", "suggestion"]
+__all__ = ["cause_of", "found", "full_text", "quantity", "suggestion", "unit_factor", "unit_name"]
 
 
 def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
@@ -41,3 +41,19 @@ def cause_of(error: BaseException) -> str:
     """Return the text of an error as a cause, with the type in front unless it is meant for a person."""
     text = full_text(error)
     return text if isinstance(error, EvoframeError) else f"{type(error).__name__}: {text}"
+
+
+def unit_factor(unit: str) -> float:
+    """Return the factor from values in *unit* to values that people read: meters become millimeters."""
+    return 1000.0 if unit == "m" else 1.0
+
+
+def unit_name(unit: str) -> str:
+    """Return the name of the unit that people read for values in *unit*."""
+    return "mm" if unit == "m" else unit
+
+
+def quantity(value: float, unit: str, digits: int = 4) -> str:
+    """Return a value in *unit* as people read it, with significant *digits*: ``3.781 mm`` for 0.0037813 m."""
+    number = f"{value * unit_factor(unit):z.{digits}g}"  # z: no negative zero
+    return f"{number} {unit_name(unit)}".rstrip()

@@ -12,8 +12,8 @@ __all__ = ["completion"]
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @click.pass_context
 def completion(ctx: click.Context, shell: str) -> None:
-    """Print the script that completes commands, options and presets in a SHELL."""
+    """Print the shell script that completes commands, options and presets."""
     class_ = get_completion_class(shell)
     if class_ is None:
-        raise click.UsageError(f"click knows no completion for {shell}")
+        raise click.UsageError(f"click does not support completion for {shell}")
     click.echo(class_(ctx.find_root().command, {}, "evoframe", "_EVOFRAME_COMPLETE").source())

@@ -13,7 +13,7 @@ __all__ = ["config"]
 @click.group()
 @common_options
 def config() -> None:
-    """Look at configurations."""
+    """Print configurations, or write a new one."""
 
 
 _EPILOG = """\b
@@ -29,6 +29,6 @@ Examples:
 @common_options
 @click.pass_context
 def show(ctx: click.Context, source: str, overrides: tuple[str, ...]) -> None:
-    """Print a configuration with every default written out, after checking it."""
+    """Check a configuration and print it with every default."""
     resolved = load_config(source, overrides=overrides, plugins=plugins_of(ctx))
     click.echo(resolved.to_toml(), nl=False)

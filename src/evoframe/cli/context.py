@@ -1,8 +1,9 @@
-"""What several commands share."""
+"""Options and output shared by several commands."""
 
 from __future__ import annotations
 
 import logging
+import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,12 +15,14 @@ from click.shell_completion import CompletionItem
 from rich.console import Console
 
 from evoframe.errors import InputError
+from evoframe.messages import quantity
 
 if TYPE_CHECKING:
     from evoframe.config import Layer
     from evoframe.registry import Plugins
 
 __all__ = [
+    "command",
     "common_options",
     "configuration_argument",
     "correction_option",
@@ -40,12 +43,12 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 @attrs.define
 class _Common:
-    """What the common options say, wherever on the command line they stand.
+    """Values of the common options, collected from before and after the name of the command.
 
     Attributes:
         modules: Local plugins.
-        verbosity: How much is told; below 0: only what was asked for, and errors.
-        plugins: What was discovered, once somebody asked for it.
+        verbosity: Number of ``-v``; below 0: requested output and errors only.
+        plugins: The plugins, discovered on first use.
     """
 
     modules: list[str] = attrs.field(factory=list)
@@ -54,7 +57,7 @@ class _Common:
 
 
 class _Handler(logging.Handler):
-    """Writes to whatever standard error is at the time, which a progress bar takes over while it is shown."""
+    """A handler that writes to the current ``sys.stderr``, which a progress bar replaces while it runs."""
 
     def emit(self, record: logging.LogRecord) -> None:
         sys.stderr.write(f"{self.format(record)}\n")
@@ -83,11 +86,11 @@ def common_options(function: F) -> F:
             "-p",
             "--plugin",
             multiple=True,
-            is_eager=True,  # before --help, which lists the commands of plugins too
+            is_eager=True,  # before --help, which also lists the commands of plugins
             expose_value=False,
             callback=_add_modules,
             metavar="MODULE",
-            help="Use a plugin that is one local module: an importable name or a .py file. Repeatable.",
+            help="Load a plugin from a local module: an importable name or a .py file. Repeatable.",
         ),
         click.option(
             "-q",
@@ -95,7 +98,7 @@ def common_options(function: F) -> F:
             is_flag=True,
             expose_value=False,
             callback=_speak,
-            help="Say only what was asked for.",
+            help="Print only the requested output.",
         ),
         click.option(
             "-v",
@@ -103,7 +106,7 @@ def common_options(function: F) -> F:
             count=True,
             expose_value=False,
             callback=_speak,
-            help="Say more; twice: everything.",
+            help="Increase verbosity (-vv: debug).",
         ),
     ):
         function = option(function)
@@ -111,35 +114,41 @@ def common_options(function: F) -> F:
 
 
 def output() -> Console:
-    """Return where tables go: what a user wrote is no markup, and nothing is cut but by a terminal."""
+    """Return the console for tables: names are printed literally, and only a terminal limits the width."""
     console = Console(markup=False, emoji=False, highlight=False)
     return console if console.is_terminal else Console(markup=False, emoji=False, highlight=False, width=4096)
 
 
 def messages() -> Console:
-    """Return where progress goes: the terminal, if the standard error is one."""
+    """Return the console for progress on standard error."""
     return Console(
         stderr=True, markup=False, emoji=False, highlight=False, force_terminal=sys.stderr.isatty()
     )
 
 
 def scored(score: float | None, unit: str) -> str:
-    """Return a score with all its digits and its *unit*."""
-    return "diverged" if score is None else f"{score!r} {unit}".rstrip()
+    """Return a score with its *unit* as people read it."""
+    return "diverged" if score is None else quantity(score, unit)
 
 
 def is_quiet(ctx: click.Context) -> bool:
-    """Return whether only what was asked for shall be said."""
+    """Return whether only the requested output is printed (``-q``)."""
     return _common(ctx).verbosity < 0
 
 
 def modules_of(ctx: click.Context) -> tuple[str, ...]:
-    """Return the local plugins that were named, for other processes to discover."""
+    """Return the local plugins given with ``-p``, for other processes to load."""
     return tuple(_common(ctx).modules)
 
 
+def command(ctx: click.Context, *words: object) -> str:
+    """Return a command for a user to type next, with the ``-p`` options of this invocation."""
+    options = [part for module in modules_of(ctx) for part in ("-p", module)]
+    return shlex.join(["evoframe", *map(str, words), *options])
+
+
 def plugins_of(ctx: click.Context) -> Plugins:
-    """Return the plugins of this invocation, discovered once."""
+    """Return the plugins, discovered once per invocation."""
     from evoframe.registry import discover
 
     common = _common(ctx)
@@ -156,7 +165,7 @@ def _complete_preset(_: click.Context, __: click.Parameter, incomplete: str) -> 
 
 
 def configuration_argument(function: F) -> F:
-    """Add the argument that names a preset or a file."""
+    """Add the argument for a preset or a configuration file."""
     return click.argument(
         "source", metavar="[CONFIG|PRESET]", default="paper", shell_complete=_complete_preset
     )(function)
@@ -168,8 +177,8 @@ def preset_option(function: F) -> F:
         "--preset",
         metavar="P",
         shell_complete=_complete_preset,
-        help="What the file does not say is as in this preset; a champion is simulated as in its run, "
-        "unless a preset is named.  [default: paper]",
+        help="Preset (or TOML file) for settings that the file does not contain. With a run, replaces the "
+        "run's settings.  [default: the run's settings; paper for other files]",
     )(function)
 
 
@@ -180,7 +189,7 @@ def set_option(function: F) -> F:
         "overrides",
         multiple=True,
         metavar="KEY=VALUE",
-        help="Override a setting; the value is TOML, a bare word is a string. Repeatable.",
+        help="Override a setting. The value is TOML; a bare word is a string. Repeatable.",
     )(function)
 
 
@@ -193,17 +202,17 @@ def correction_option(function: F) -> F:
         type=click.Choice(CORRECTIONS),
         default="holm",
         show_default=True,
-        help="Of the p-values for the number of pairs; the paper uses none.",
+        help="Correction of pairwise p-values for multiple comparisons (the paper uses none).",
     )(function)
 
 
 @contextmanager
 def needing_extra(extra: str, what: str) -> Iterator[None]:
-    """Say what to install where an import fails, for it is of an extra.
+    """Turn a failed import of an optional dependency into an error that names the extra to install.
 
     Args:
-        extra: The extra.
-        what: What it is for, in words.
+        extra: The extra that contains the dependency.
+        what: Its purpose, for the message.
 
     Raises:
         InputError: A module is not installed.
@@ -212,7 +221,10 @@ def needing_extra(extra: str, what: str) -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         name = str(error.name).partition(".")[0]
-        raise InputError(f"{name} is not installed; for {what}: pip install 'evoframe[{extra}]'") from error
+        raise InputError(
+            f"{what} require the package {name}, which is not installed; in a checkout of evoframe, run: "
+            f"pip install '.[{extra}]'"
+        ) from error
 
 
 def _workers_layer(_: click.Context, __: click.Parameter, workers: int | None) -> list[Layer]:
@@ -222,11 +234,11 @@ def _workers_layer(_: click.Context, __: click.Parameter, workers: int | None) -
 
 
 def workers_option(function: F) -> F:
-    """Add ``--workers N``, which comes as the layers that it sets."""
+    """Add ``--workers N``, passed on as layers of settings."""
     return click.option(
         "--workers",
         type=click.IntRange(min=0),
         callback=_workers_layer,
         metavar="N",
-        help="Simulate on N cores at once; 0: all. The results are the same.",
+        help="Number of parallel simulations (0: one per core); does not change the results.",
     )(function)

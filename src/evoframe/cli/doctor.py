@@ -20,8 +20,8 @@ __all__ = ["doctor"]
 
 _EPILOG = """\b
 Examples:
-  evoframe doctor                             is the installation in order?
-  evoframe doctor runs/paper-1                is that run?
+  evoframe doctor                             check the installation
+  evoframe doctor runs/paper-1                check one run
   evoframe doctor runs/* --json
 """
 
@@ -34,12 +34,12 @@ _STYLES: dict[State, str] = {"ok": "green", "note": "yellow", "problem": "bold r
 @common_options
 @click.pass_context
 def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> None:
-    """Look whether everything is in order: the installation, or the directories of runs.
+    """Check the installation, or the directories of runs and studies.
 
-    Of an installation: the plugins, versions, the kernel of the solver, and a few simulations. Of a run: its
-    database, whether its turns are complete, whether it can go on, and whether its champion scores again what
-    it scored then, to the last digit. Nothing is changed. The exit code is 1 if there is a problem, and 2 if
-    something is no run's directory or is being written.
+    Without an argument, checks plugins, versions, the solver's kernel and a few simulations. For a run,
+    checks its database, the completeness of its turns, that it can be resumed, and that simulating its
+    champion again gives the recorded score to the last digit. Nothing is changed. Exit code 1: a problem was
+    found; 2: a directory is not that of a run, or another process is writing to it.
     """
     found = plugins_of(ctx)
     refused: list[InputError] = []
@@ -59,7 +59,7 @@ def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> 
 
 
 def _checks(directory: Path, plugins: Plugins, refused: list[InputError]) -> list[Check]:
-    """Return what is found out about a run; what cannot be looked at does not hide the others."""
+    """Return the checks of a run; an unreadable directory is a problem of that run only."""
     try:
         return list(check_run(directory, plugins))
     except InputError as error:

@@ -24,14 +24,16 @@ Examples:
 
 @click.command(epilog=_EPILOG)
 @click.argument("source", metavar="RUN|FILE", type=click.Path(path_type=Path))
-@click.option("--to", "format_", metavar="FORMAT", required=True, help="A format of the simulator: vxa.")
+@click.option(
+    "--to", "format_", metavar="FORMAT", required=True, help="File format; the simulator vox writes vxa."
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, allow_dash=True),
     metavar="PATH",
-    help="Where to; - is standard output.  [default: RUN/champion.FORMAT, or the FILE with this ending]",
+    help="File to write (-: standard output).  [default: RUN/champion.FORMAT, or FILE with that ending]",
 )
-@click.option("--force", is_flag=True, help="Replace a file that is there and holds something else.")
+@click.option("--force", is_flag=True, help="Overwrite a file with different content.")
 @preset_option
 @set_option
 @common_options
@@ -45,15 +47,15 @@ def export(
     preset: str | None,
     overrides: tuple[str, ...],
 ) -> None:
-    """Write a design with its settings as a file of another program.
+    """Write a design and its settings in the file format of another program.
 
-    A RUN is a run's directory and stands for its champion. A FILE is what evoframe simulate takes, with one
-    design. What the format cannot say is named on standard error.
+    A RUN is the directory of a run, for its champion. A FILE is any file that evoframe simulate reads, with
+    one design. Settings that the format cannot express are listed on standard error.
     """
     job = read_job(source, preset, overrides, plugins_of(ctx), runs=True)
     exported = export_job(job, format_)
     for entry in exported.left_out:
-        click.echo(f"Warning: left out: {entry}", err=True)
+        click.echo(f"Warning: not exported: {entry}", err=True)
     default = job.path / f"champion.{format_}" if job.run else job.path.with_suffix(f".{format_}")
     path = out or default
     if path == _STDOUT:
@@ -64,7 +66,7 @@ def export(
 
 
 def _write(path: Path, data: bytes, force: bool) -> None:
-    """Write a file, unless something else is there that nobody allowed to replace."""
+    """Write a file; overwrite different content only with *force*."""
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)  # a device or a pipe; a directory refuses
@@ -73,10 +75,11 @@ def _write(path: Path, data: bytes, force: bool) -> None:
             return
         if path.exists() and not force:
             raise InputError(
-                f"{path}: holds something else; replace it with --force, or choose another --out"
+                "exists with different content; overwrite it with --force, or choose another --out",
+                source=path,
             )
         write_atomically(path, data)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise InputError(f"cannot be written: {error.strerror}", source=path) from error
     except RunError as error:
-        raise InputError(str(error)) from error
+        raise InputError(error.problem, source=error.source, key=error.key) from error

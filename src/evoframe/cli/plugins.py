@@ -17,7 +17,7 @@ __all__ = ["plugins"]
 @click.group()
 @common_options
 def plugins() -> None:
-    """Look at plugins."""
+    """List plugins and the components that they offer."""
 
 
 @plugins.command(name="list", epilog="\b\nExamples:\n  evoframe plugins list\n  evoframe plugins list --json")
@@ -25,7 +25,7 @@ def plugins() -> None:
 @common_options
 @click.pass_context
 def list_(ctx: click.Context, as_json: bool) -> None:
-    """List the components that are installed, who offers them, and the plugins that were skipped."""
+    """List installed components with the plugins that offer them, and plugins that failed to load."""
     found = plugins_of(ctx)
     if as_json:
         click.echo(json.dumps(_document(found), indent=2))
@@ -62,7 +62,7 @@ def _document(found: Plugins) -> dict[str, Any]:
 
 
 def _table(found: Plugins) -> Table:
-    table = Table("kind", "name", "what it is", "distribution", "version", box=None, header_style="bold")
+    table = Table("kind", "name", "description", "distribution", "version", box=None, header_style="bold")
     for offer in _sorted(found):
         [what, *_] = (offer.component.__doc__ or "").strip().splitlines() or [""]
         table.add_row(offer.kind, offer.name, what, offer.source.distribution, offer.source.version)

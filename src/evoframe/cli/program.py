@@ -22,13 +22,13 @@ __all__ = ["cli", "main"]
 
 
 class _Failure(click.ClickException):
-    """An error of ours, shown as one message."""
+    """An error that evoframe raises on purpose, printed as one message."""
 
     exit_code = 2
 
 
 class _RunFailure(_Failure):
-    """A run that cannot go on, although its input was good."""
+    """A run that failed although its input was valid."""
 
     exit_code = 1
 
@@ -38,26 +38,24 @@ def _failure(error: EvoframeError) -> _Failure:
 
 
 COMMANDS: Mapping[str, str] = {
-    "completion": "Print the script that completes commands, options and presets in a SHELL.",
-    "config": "Look at configurations.",
-    "doctor": "Look whether everything is in order: the installation, or the directories of runs.",
-    "export": "Write a design with its settings as a file of another program.",
-    "plugins": "Look at plugins.",
-    "report": "Write figures, tables, conclusions and a page of runs and studies, finished or not.",
-    "resume": "Go on with a run that was interrupted, from its last complete turn.",
-    "robustness": "Simulate bodies with the same random controllers, and compare what they score.",
-    "run": "Run a coevolution: a TOML file, or a preset (without argument: paper).",
-    "simulate": "Simulate given bodies and print the score of each.",
-    "study": "Run a grid of configurations, each several times; go on where that was left.",
-    "verify": (
-        "Simulate designs again with one thing changed at a time, and print what is left of their scores."
-    ),
+    "completion": "Print the shell script that completes commands, options and presets.",
+    "config": "Print configurations, or write a new one.",
+    "doctor": "Check the installation, or the directories of runs and studies.",
+    "export": "Write a design and its settings in the file format of another program.",
+    "plugins": "List plugins and the components that they offer.",
+    "report": "Write the report of a run or study: figures, tables, conclusions and an interactive page.",
+    "resume": "Resume an interrupted run from its last complete turn.",
+    "robustness": "Compare bodies by their scores under the same random controllers.",
+    "run": "Run one coevolution.",
+    "simulate": "Simulate designs and print their scores.",
+    "study": "Run a grid of configurations, several runs each.",
+    "verify": "Test what a score depends on: simulate again with one setting changed at a time.",
 }
-"""Name of a built-in command, which is that of its module -> what it does, so that help loads no command."""
+"""Name of a built-in command and of its module -> first line of its help, so that help loads no command."""
 
 
 class _Program(click.Group):
-    """A group that loads a command when it is called; plugins add some, and replace none."""
+    """A group that loads a command when it is called; plugins add commands and cannot replace any."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted({*COMMANDS, *self._of_plugins(ctx).commands})
@@ -87,7 +85,7 @@ class _Program(click.Group):
     def _of_plugins(self, ctx: click.Context) -> click.Group:
         group = click.Group("evoframe")
         if not modules_of(ctx) and not _plugins_of_others():
-            return group  # the built-in plugins add no commands, and take a second to load
+            return group  # the built-in plugins add no commands and take a second to load
         from evoframe.registry import Observers  # noqa: PLC0415 - as they do
 
         try:
@@ -106,16 +104,18 @@ def _plugins_of_others() -> bool:
 _EPILOG = """\b
 Examples:
   evoframe run                                the published experiment
-  evoframe run quick                          a few seconds of it
-  evoframe run --set aggregator=hm --seed 7
-  evoframe resume runs/paper-1                go on with it after an interruption
-  evoframe study paper --dry-run              the published study: 600 runs
-  evoframe simulate runs/paper-1/champion.json
-  evoframe verify runs/paper-1                is its champion real?
+  evoframe run quick                          a small version of it, in seconds
+  evoframe run --set aggregator=hm --seed 7   with other settings
+  evoframe resume runs/paper-1                continue after an interruption
+  evoframe report runs/paper-1                figures, and a page that shows the champion moving
+  evoframe verify runs/paper-1                what does the champion's score depend on?
+  evoframe simulate runs/paper-1              simulate the champion again
   evoframe robustness runs/paper-1 --published
-  evoframe export runs/paper-1 --to vxa
+  evoframe export runs/paper-1 --to vxa       for VoxCAD
+  evoframe study paper --dry-run              the published study: 600 runs
+  evoframe config show --comments             every setting, with its meaning and range
   evoframe plugins list
-  evoframe doctor                             is everything in order?
+  evoframe doctor                             check the installation
 """
 
 
@@ -127,10 +127,10 @@ Examples:
 @click.version_option(__version__, prog_name="evoframe", message="%(prog)s %(version)s")
 @common_options
 def cli() -> None:
-    """Cooperative coevolution of soft robots.
+    """Design soft robots by cooperative coevolution.
 
-    Two populations of networks, one of bodies and one of controllers, are evolved together: each individual
-    is judged by how well it does with partners from the other population.
+    Two populations of networks evolve together: one encodes bodies, the other controllers. The fitness of an
+    individual is an average of the scores that it reaches with collaborators from the other population.
     """
 
 

@@ -1,4 +1,4 @@
-"""What a run shows while it goes on: a bar on a terminal, a line now and then elsewhere."""
+"""Progress of a run: a bar on a terminal, otherwise a line every few seconds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from evoframe.cli.context import messages
-from evoframe.contract import RunConfig, Turn
+from evoframe.contract import RunConfig, Turn, unit_of
+from evoframe.messages import quantity
 from evoframe.registry import hookimpl
 
 __all__ = ["Progress", "bar_columns"]
@@ -21,23 +22,26 @@ _BAR_INTERVAL = 0.25  # s; drawing costs as much as a simulation or two
 
 
 class Progress:
-    """An observer that reports on standard error."""
+    """An observer that reports progress on standard error."""
 
     def __init__(self) -> None:
         self._console = messages()
         self._bar: _Bar | None = None
         self._task = progress.TaskID(0)
         self._best: dict[str, float] = {}
+        self._unit = ""
         self._turns = self._pairs = self._simulations = 0
         self._started = self._shown = time.monotonic()
 
     @hookimpl
     def evoframe_run_started(self, config: RunConfig, directory: Path) -> None:
-        """Begin with the name of the run."""
+        """Print the name, seed and directory of the run."""
         self._turns = config.run.generations * len(config.populations)
+        self._unit = unit_of(config.objective.component)
         self._started = self._shown = time.monotonic()
         self._console.print(
-            f"{config.label}, seed {config.run.seed}: {self._turns} turns into {directory}", soft_wrap=True
+            f"{config.label}, seed {config.run.seed}: {self._turns} turns, saved in {directory}",
+            soft_wrap=True,
         )
         if self._console.is_terminal:
             self._bar = _Bar(
@@ -47,12 +51,12 @@ class Progress:
                 refresh_per_second=1 / _BAR_INTERVAL,
                 expand=True,
             )
-            self._task = self._bar.add_task("initial meeting", total=self._turns + 1, detail="")
+            self._task = self._bar.add_task("turn 0", total=self._turns + 1, detail="")
             self._bar.start()
 
     @hookimpl
     def evoframe_turn_finished(self, turn: Turn) -> None:
-        """Show the turn, the best fitness of each population, the rate and the share from the cache."""
+        """Show the turn, the best fitness of each population, the rate and the share of cached scores."""
         self._pairs += turn.workload.pairs
         self._simulations += turn.workload.simulations
         self._best |= {report.population: report.best for report in turn.reports}
@@ -64,12 +68,12 @@ class Progress:
 
     @hookimpl
     def evoframe_run_finished(self) -> None:
-        """Leave the terminal as it was."""
+        """Remove the bar."""
         if self._bar is not None:
             self._bar.stop()
 
     def _show(self, turn: Turn, now: float) -> None:
-        done = f"turn {turn.index}/{self._turns}" if turn.reports else "closing meeting"
+        done = f"turn {turn.index}/{self._turns}" if turn.reports else "final pair"
         if self._bar is None:
             seconds = (now - self._started) / (turn.index + 1) * (self._turns - turn.index)
             self._console.print(f"{done}  {self._detail(now)}  {seconds:.0f} s left", soft_wrap=True)
@@ -77,14 +81,16 @@ class Progress:
             self._bar.update(self._task, completed=turn.index + 1, description=done, detail=self._detail(now))
 
     def _detail(self, now: float) -> str:
-        best = "  ".join(f"{population} {fitness:.5f}" for population, fitness in self._best.items())
+        best = "  ".join(
+            f"{population} {quantity(fitness, self._unit)}" for population, fitness in self._best.items()
+        )
         rate = self._simulations / max(now - self._started, 1e-9)
         cached = 1 - self._simulations / self._pairs
-        return f"{best}  {rate:.0f} sim/s  {cached:.0%} cached"
+        return f"best fitness: {best}  {rate:.0f} simulations/s  {cached:.0%} of pairs cached"
 
 
 class _Bar(progress.Progress):
-    """A bar with the turn and the time left, and below it a line of figures."""
+    """A bar with the turn and the time left, and a line of details below it."""
 
     def get_renderables(self) -> Iterable[RenderableType]:
         yield self.make_tasks_table(self.tasks)
@@ -92,7 +98,7 @@ class _Bar(progress.Progress):
 
 
 def bar_columns(text: str) -> Sequence[progress.ProgressColumn]:
-    """Return the columns of a bar: a *text* with the fields of the task, the bar, and the time left."""
+    """Return the columns of a bar: *text* with fields of the task, the bar, and the time left."""
     return (
         progress.TextColumn(text),
         progress.BarColumn(bar_width=None),

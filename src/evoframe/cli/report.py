@@ -26,7 +26,7 @@ Examples:
     "--out",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Where to, if it is one report; by default DIR/report.",
+    help="Directory to write to; only with one DIR.  [default: DIR/report]",
 )
 @correction_option
 @common_options
@@ -34,23 +34,23 @@ Examples:
 def report(
     ctx: click.Context, directories: tuple[Path, ...], out: Path | None, correction: Correction
 ) -> None:
-    """Write figures, tables, conclusions and a page of runs and studies, finished or not.
+    """Write the report of a run or study: figures, tables, conclusions and an interactive page.
 
-    DIR is the directory of a run or of a study. The last key of a study's grid is what is compared; each
-    combination of the others has figures and tests of its own, on two yardsticks: the score of the best pair
-    that was simulated, and the averaged fitness. The page, report.html, has all in one file.
+    DIR is the directory of a run or study, which need not be finished. The report of a study compares the
+    values of the grid's last key, separately for each combination of the other keys, by two measures: the
+    score of the best pair, and the averaged fitness. The page report.html contains everything in one file.
     """
     with needing_extra("report", "reports"):
         from evoframe.analysis import report as room  # noqa: PLC0415 - takes a second, and an extra
 
         write = room.report
     if out is not None and len(directories) > 1:
-        raise InputError(f"--out {out}: is one place, but {len(directories)} reports are asked for")
+        raise InputError(f"expected one DIR, found {len(directories)}", source=f"--out {out}")
     for directory in directories:
         written = write(directory, out=out, correction=correction, plugins=plugins_of(ctx))
         if is_quiet(ctx):
             click.echo(written.directory)
         else:
             click.echo(written.words)
-            place = f"{len(written.files)} files are in {written.directory}"
-            click.echo(f"{place}; to be looked at: report.html", err=True)
+            page = written.directory / "report.html"
+            click.echo(f"{len(written.files)} files written; open {page} in a browser", err=True)

@@ -27,7 +27,7 @@ Examples:
 @click.option(
     "--allow-different-versions",
     is_flag=True,
-    help="Go on although versions or the machine have changed since the run began; the run notes it.",
+    help="Resume although versions or the type of machine have changed; the run records this.",
 )
 @set_option
 @workers_option
@@ -40,12 +40,11 @@ def resume(
     overrides: tuple[str, ...],
     workers: list[Layer],
 ) -> None:
-    """Go on with a run that was interrupted, from its last complete turn.
+    """Resume an interrupted run from its last complete turn.
 
-    RUN is the run's directory. The result is the same, bit for bit, as if the run had never been
-    interrupted, whatever the number of workers. What is not as when the run began (its configuration,
-    versions, the type of machine) is named, and the run does not go on; only settings of the executor may
-    be others.
+    RUN is the directory of a run. The result is bit for bit that of an uninterrupted run, with any number
+    of workers. Only settings of the executor may change: with another configuration, other versions or
+    another type of machine, evoframe reports the differences and does not resume.
     """
     plugins = plugins_of(ctx)
     settings: list[str | Layer] = [*overrides, *workers]
@@ -54,9 +53,9 @@ def resume(
             execution = reopen(run, settings, plugins, allow_different_versions=allow_different_versions)
         else:
             unverified = run.verification() is None
-            if settings or unverified:  # also to refuse what would have been another run
+            if settings or unverified:  # refuses settings that differ from those of the run
                 config = configuration_of(run, settings, plugins)
-            click.echo(f"{directory}: is finished", err=True)
+            click.echo(f"{directory}: the run is finished", err=True)
             if unverified:
                 run.read_all()
                 show_end(ctx, config, run)

@@ -27,6 +27,7 @@ from evoframe.cli.context import (
 )
 from evoframe.cli.progress import bar_columns
 from evoframe.config import Layer
+from evoframe.messages import unit_factor, unit_name
 from evoframe.robustness import measure, read_candidates, refuse_another, setting_of, write_measurement
 
 __all__ = ["robustness"]
@@ -47,25 +48,25 @@ Examples:
     default=1000,
     show_default=True,
     metavar="N",
-    help="How many are drawn; the same for all bodies.",
+    help="Number of random controllers, the same for all bodies.",
 )
-@click.option("--published", is_flag=True, help="Measure the bodies that the simulator brings, too.")
+@click.option("--published", is_flag=True, help="Include the published bodies that the simulator provides.")
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
     default=1,
     show_default=True,
     metavar="N",
-    help="All controllers derive from it, and from nothing else.",
+    help="Seed of the random controllers.",
 )
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Where to; by default RUN/robustness if one directory is named, otherwise robustness.",
+    help="Directory to write to.  [default: DIR/robustness for one directory, else ./robustness]",
 )
-@click.option("--force", is_flag=True, help="Replace what was measured otherwise.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, with all scores.")
+@click.option("--force", is_flag=True, help="Overwrite a measurement made with different settings.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON with all scores.")
 @correction_option
 @preset_option
 @set_option
@@ -86,11 +87,11 @@ def robustness(
     overrides: tuple[str, ...],
     workers: list[Layer],
 ) -> None:
-    """Simulate bodies with the same random controllers, and compare what they score.
+    """Compare bodies by their scores under the same random controllers.
 
-    A RUN is a run's directory and stands for its champion. A STUDY is a study's directory: the champions of
-    the finished runs of each configuration are a group. A FILE is what evoframe simulate takes. Figure,
-    tables, scores and conclusions are written as files.
+    A RUN is the directory of a run, for its champion. A STUDY is the directory of a study: the champions of
+    each configuration form one group. A FILE is any file that evoframe simulate reads. Writes a figure,
+    tables, scores and conclusions.
     """
     with needing_extra("report", "statistics and figures"):
         from evoframe.analysis import robustness as analysis  # noqa: PLC0415 - takes a second, and an extra
@@ -102,10 +103,10 @@ def robustness(
     if out is None and len(sources) == 1 and sources[0].is_dir():
         directory = sources[0] / "robustness"
     refuse_another(directory, setting, force=force)
-    prepare_directory(directory)  # before the time that it takes to measure
+    prepare_directory(directory)  # fails before the measurement, which takes time
     with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as on_progress:
         measured = measure(candidates, setting, on_progress)
-    written = write_measurement(measured, directory)  # before anything is concluded from it
+    written = write_measurement(measured, directory)  # saved even if the analysis fails
     found = analysis.find(measured, correction)
     written += analysis.write_findings(found, directory)
     if as_json:
@@ -114,12 +115,12 @@ def robustness(
     output().print(_table(analysis.records(analysis.groups_table(found)), setting.unit))
     click.echo(f"\n{analysis.conclusions(found)}", nl=False)
     if not is_quiet(ctx):
-        click.echo(f"{len(written)} files are in {directory}", err=True)
+        click.echo(f"{len(written)} files written to {directory}", err=True)
 
 
 @contextmanager
 def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
-    """Show on a terminal how many simulations are done; yield what counts more of them."""
+    """Show the number of finished simulations on a terminal; yield a function that adds to it."""
     console = messages()
     bar = progress.Progress(
         *bar_columns("{task.completed:,} of {task.total:,} simulations"),
@@ -134,11 +135,18 @@ def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
 
 
 def _table(groups: list[dict[str, Any]], unit: str) -> Table:
-    """Return the groups as a person reads them: a line each, displacements in millimetres."""
-    factor, shown = (1000.0, "mm") if unit == "m" else (1.0, unit)
+    """Return one line for each group, displacements in millimeters."""
+    factor, shown = unit_factor(unit), unit_name(unit)
     table = Table(box=None, header_style="bold")
     table.add_column("", overflow="fold")
-    for heading in ("bodies", f"median {shown}".rstrip(), "quartiles", "range", "positive", "diverged"):
+    for heading in (
+        "bodies",
+        f"median ({shown})" if shown else "median",
+        "quartiles",
+        "range",
+        "positive",
+        "diverged",
+    ):
         table.add_column(heading, justify="right", overflow="fold")
     for row in groups:
         figures = ["", "", "", ""]

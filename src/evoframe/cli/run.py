@@ -21,7 +21,7 @@ __all__ = ["run"]
 
 _EPILOG = """\b
 Examples:
-  evoframe run                                    the preset 'paper'
+  evoframe run                                    the published experiment (preset paper)
   evoframe run quick --seed 3 --out runs/try
   evoframe run --set aggregator=hm --set collaboration.n=5
   evoframe run my.toml --set 'aggregator={name="wm", weights=[0.7, 0.3]}'
@@ -31,12 +31,14 @@ Examples:
 @click.command(epilog=_EPILOG)
 @configuration_argument
 @set_option
-@click.option("--seed", type=click.IntRange(min=0), metavar="N", help="Override run.seed.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), metavar="N", help="Seed of the run; same as --set run.seed=N."
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="The run's directory; by default runs/<preset>-<seed>.",
+    help="Directory to write the run to.  [default: runs/NAME-SEED, with the settings that were changed]",
 )
 @workers_option
 @common_options
@@ -49,10 +51,11 @@ def run(
     out: Path | None,
     workers: list[Layer],
 ) -> None:
-    """Run a coevolution: a TOML file, or a preset (without argument: paper).
+    """Run one coevolution.
 
-    Ctrl-C stops after the turn in progress, and a second one at once; everything up to then is saved, and
-    evoframe resume goes on. At the end the champion is verified, as evoframe verify does.
+    The argument is a configuration file (TOML) or a preset; the default is the preset paper. Every turn is
+    saved: Ctrl-C stops after the turn in progress, a second Ctrl-C at once, and evoframe resume continues.
+    At the end, the champion is verified as by evoframe verify.
     """
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     plugins = plugins_of(ctx)

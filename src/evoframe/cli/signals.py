@@ -1,4 +1,4 @@
-"""What Ctrl-C and SIGTERM mean while something long goes on: stop soon; the second time, at once."""
+"""Stop on Ctrl-C or SIGTERM: the first signal stops soon, a second one at once."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Stop:
-    """Remembers that somebody asked to stop; a second request stops at once.
+    """A request to stop; a second request stops at once.
 
     Attributes:
-        asked_by: The signal, if somebody did.
+        asked_by: The signal that requested it, if any.
     """
 
     def __init__(self, when: str) -> None:
@@ -26,19 +26,19 @@ class Stop:
         self._when = when
 
     def is_asked(self) -> bool:
-        """Return whether somebody asked to stop."""
+        """Return whether a stop was requested."""
         return self.asked_by is not None
 
     @property
     def exit_code(self) -> int:
-        """What a shell expects of a process that was stopped like this."""
+        """Exit code that a shell expects after this stop."""
         return exit_code(self.asked_by or signal.SIGINT)
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """Note a signal, and say what comes of it.
+        """Record a signal and report its effect.
 
         Raises:
-            KeyboardInterrupt: It is the second.
+            KeyboardInterrupt: This is the second signal.
         """
         if self.asked_by is not None:
             signal.default_int_handler(number, frame)
@@ -48,13 +48,13 @@ class Stop:
 
 
 def exit_code(number: int) -> int:
-    """Return what a shell expects of a process that was ended by a signal."""
+    """Return the exit code that a shell expects of a process ended by a signal."""
     return 128 + number
 
 
 @contextlib.contextmanager
 def stop_on_signals(when: str) -> Iterator[Stop]:
-    """Let signals ask to stop after *when*, such as ``this turn``."""
+    """Handle signals as requests to stop after *when*, such as ``this turn``."""
     stop = Stop(when)
     previous = {number: signal.signal(number, stop.handle) for number in _SIGNALS}
     try:

@@ -29,28 +29,28 @@ __all__ = ["simulate"]
 
 _EPILOG = """\b
 Examples:
-  evoframe simulate runs/paper-1/champion.json
+  evoframe simulate runs/paper-1
   evoframe simulate bodies.npz --json
   evoframe simulate body.npz --set simulator.expansion_coefficient=0 --trace trace.csv
 """
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("files", metavar="RUN|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @preset_option
 @set_option
 @click.option(
     "--json",
     "as_json",
     is_flag=True,
-    help="Print JSON with full precision: labels, score, objective, unit, diverged and diverged_at, lists "
-    "with an entry for each design; displacement repeats score where every unit is m.",
+    help="Print JSON with full precision: the lists labels, score, objective, unit, diverged and diverged_at "
+    "with one entry for each design; if every unit is m, also displacement, equal to score.",
 )
 @click.option(
     "--trace",
     type=click.Path(path_type=Path, dir_okay=False),
     metavar="OUT.csv",
-    help="Write where the points of one body are after every step.",
+    help="Write the positions of the traced points of one body after every step.",
 )
 @workers_option
 @common_options
@@ -64,13 +64,13 @@ def simulate(
     trace: Path | None,
     workers: list[Layer],
 ) -> None:
-    """Simulate given bodies and print the score of each.
+    """Simulate designs and print their scores.
 
-    A FILE is a run's champion.json, which is simulated as in its run; or what the simulator reads: an .npz
-    with material ([X,Y,Z] or [N,X,Y,Z]; codes 0 empty, 1 passive, 3 contractile) and phase_cycles of the same
-    shape, or a .vxa, which brings its own settings with it.
+    A RUN is the directory of a run, or its champion.json: the champion is simulated with the run's settings.
+    A FILE is an .npz file with the arrays material ([X,Y,Z] or [N,X,Y,Z]; codes: 0 empty, 1 passive,
+    3 contractile) and phase_cycles of the same shape, or a .vxa file, which contains its own settings.
     """
-    jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx)) for path in files]
+    jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True) for path in files]
     if trace is not None:
         _write_trace(trace, jobs)
     scored_jobs = [(job, simulate_job(job)) for job in jobs]
@@ -87,7 +87,7 @@ def simulate(
 
 @attrs.frozen
 class _Body:
-    """A design that was simulated, and how it was scored."""
+    """A simulated design and its score."""
 
     label: str
     score: Score
@@ -96,7 +96,7 @@ class _Body:
 
 
 def _document(bodies: list[_Body]) -> dict[str, Any]:
-    """Return lists that are parallel, with an entry for each body."""
+    """Return parallel lists with one entry for each body."""
     values = [body.score.value for body in bodies]
     document = {
         "labels": [body.label for body in bodies],
@@ -126,7 +126,7 @@ def _table(bodies: list[_Body]) -> Table:
 def _write_trace(path: Path, jobs: list[Job]) -> None:
     given = [(job, design) for job in jobs for design in job.designs]
     if len(given) != 1:
-        raise InputError(f"--trace writes the trace of one body, but {len(given)} were given")
+        raise InputError(f"expected one body to trace, found {len(given)}", source="--trace")
     [(job, design)] = given
     with naming(job.path):
         rows = list(trace_of(job.config.simulator.component, design))
@@ -134,4 +134,4 @@ def _write_trace(path: Path, jobs: list[Job]) -> None:
         with path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise InputError(f"cannot be written: {error.strerror}", source=path) from error

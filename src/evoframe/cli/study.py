@@ -12,15 +12,16 @@ from rich.table import Table
 from evoframe.cli.context import common_options, is_quiet, modules_of, output, plugins_of, set_option
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
+from evoframe.messages import quantity
 from evoframe.study import StudyPlan, StudyResult, plan_study, read_study, run_study, study_names
 
 __all__ = ["study"]
 
 _EPILOG = """\b
 Examples:
-  evoframe study small                        a minute, to see what a study is
-  evoframe study paper --dry-run              600 runs: how long, how much room?
-  evoframe study paper --out studies/paper    run it; again, to go on with it
+  evoframe study small                        an example that takes a minute
+  evoframe study paper --dry-run              600 runs: time and disk space
+  evoframe study paper --out studies/paper    start it, or continue it
   evoframe study paper --set 'grid={"collaboration.n"=[2], aggregator=["am", "wm"]}'
   evoframe study paper --import docs/results/paper/rows.csv
 """
@@ -38,24 +39,24 @@ def _complete(_: click.Context, __: click.Parameter, incomplete: str) -> list[Co
     "--out",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="The study's directory; by default studies/<study>.",
+    help="Directory to write the study to.  [default: studies/STUDY]",
 )
 @click.option(
     "--workers",
     type=click.IntRange(min=0),
     default=0,
     metavar="N",
-    help="Number of parallel runs; 0: one per core.",
+    help="Number of parallel runs (0: one per core).  [default: 0]",
 )
 @click.option("--dry-run", is_flag=True, help="Print what would run, with estimated time and disk space.")
-@click.option("--retry", is_flag=True, help="Run what has failed once more.")
+@click.option("--retry", is_flag=True, help="Repeat runs that have failed.")
 @click.option(
     "--import",
     "tables",
     multiple=True,
     type=click.Path(path_type=Path),
     metavar="ROWS.csv",
-    help="Take finished runs from the rows.csv of another session. Repeatable.",
+    help="Import finished runs from the rows.csv of another session. Repeatable.",
 )
 @common_options
 @click.pass_context
@@ -69,12 +70,12 @@ def study(
     retry: bool,
     tables: tuple[Path, ...],
 ) -> None:
-    """Run a grid of configurations, each several times; go on where that was left.
+    """Run a grid of configurations, several runs each.
 
-    STUDY is a TOML file with a base (extends), the number of runs and a grid, or the name of a study that
-    comes with evoframe, such as paper or small. Only what is missing is run, in an order that leaves a
-    partial study balanced. Seeds are derived: those of one configuration depend on no other. At the end,
-    rows.csv has a row for each run, and curves.csv how it got there.
+    STUDY is a TOML file (extends, runs, grid), a built-in study such as paper or small, or the directory of a
+    study to continue. Only missing runs are executed, in an order that keeps a partial study balanced. The
+    seed of each run derives from its configuration and index alone. At the end, rows.csv has one row for each
+    run, and curves.csv its progress turn by turn.
     """
     found = read_study(source, overrides, plugins_of(ctx))
     modules = modules_of(ctx)
@@ -100,8 +101,8 @@ def study(
         output().print(_results(result))
     _print_failed(result)
     if stop.is_asked():
-        what = f"{len(result.left)} runs are left in {result.directory}"
-        click.echo(f"Interrupted; {what}; the same command goes on", err=True)
+        what = f"{len(result.left)} runs remain in {result.directory}"
+        click.echo(f"Interrupted; {what}; to continue, repeat the same command", err=True)
         ctx.exit(stop.exit_code)
     ctx.exit(int(bool(result.left)))
 
@@ -111,14 +112,14 @@ def _planned(plan: StudyPlan) -> Table:
     table = Table(box=None, show_header=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
-    table.add_row("configurations", f"{len(found.study.cells)}, {found.study.runs} runs each")
+    table.add_row("configurations", f"{len(found.study.cells)}, with {found.study.runs} runs each")
     unverified = f", of which {to_verify} to verify" if to_verify else ""
     table.add_row("runs", f"{len(found.rows)} finished{unverified}, {len(plan.to_run)} to run")
-    table.add_row("pairs", f"{sum(planned.cell.pairs for planned in plan.to_run):,} to score")
+    table.add_row("pairs", f"at most {sum(planned.cell.pairs for planned in plan.to_run):,} to score")
     on = "1 core" if plan.cores == 1 else f"{plan.cores} cores"
     seconds, measured = plan.estimate.seconds / plan.cores, plan.estimate.measured
-    table.add_row("time", f"{duration(seconds)} on {on}, from {measured}")
-    table.add_row("room", f"{plan.estimate.megabytes:,.0f} MB in {found.directory}")
+    table.add_row("time", f"at most {duration(seconds)} on {on}, estimated from {measured}")
+    table.add_row("disk space", f"{plan.estimate.megabytes:,.0f} MB in {found.directory}")
     return table
 
 
@@ -127,21 +128,23 @@ def _print_failed(result: StudyResult) -> None:
     for planned, cause in failed.items():
         click.echo(f"failed: {planned.label}: {cause}", err=True)
     if failed:
-        what = "1 run has failed" if len(failed) == 1 else f"{len(failed)} runs have failed"
-        click.echo(f"{what}; --retry runs what failed once more", err=True)
+        what = "1 run failed" if len(failed) == 1 else f"{len(failed)} runs failed"
+        click.echo(f"{what}; to repeat, add --retry", err=True)
 
 
 def _results(result: StudyResult) -> Table:
-    """Return the medians of the best pairs and of the last fitness, and how the first are spread."""
+    """Return the results of each configuration: scores of the best pairs, and the last best fitness."""
     study = result.study
-    table = table_of_cells(study.headings, ("runs", "best pair", "quartiles", "best", "fitness"))
+    table = table_of_cells(
+        study.headings, ("runs", "best pair (median)", "quartiles", "maximum", "best fitness (median)")
+    )
     for cell in study.cells:
         rows = [row for planned, row in result.rows.items() if planned.cell is cell]
         figures = ["", "", "", ""]
         if scores := [row.score for row in rows]:
-            low, middle, high = np.quantile(scores, [0.25, 0.5, 0.75])
-            fitness = np.median([row.fitness for row in rows])
-            spread = f"{low:.5g} to {high:.5g}"
-            figures = [f"{middle:.5g}", spread, f"{max(scores):.5g}", f"{fitness:.5g}"]
+            quartiles = np.quantile(scores, [0.25, 0.5, 0.75])
+            values = [*quartiles, max(scores), np.median([row.fitness for row in rows])]
+            low, middle, high, best, fitness = (quantity(value, cell.unit) for value in values)
+            figures = [middle, f"{low} to {high}", best, fitness]
         table.add_row(*cell.values, f"{len(rows)}/{study.runs}", *figures)
     return table

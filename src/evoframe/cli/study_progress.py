@@ -1,4 +1,4 @@
-"""What a study shows while it goes on: a bar and a table on a terminal, a line for each run elsewhere."""
+"""Progress of a study: a table and a bar on a terminal, otherwise a line for each run."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from rich.table import Table
 from rich.text import Text
 
 from evoframe.cli.context import messages
+from evoframe.messages import quantity
 from evoframe.study import Cell, End, Planned, Row, Study, Watcher
 
 __all__ = ["StudyProgress", "duration", "table_of_cells"]
 
-_INTERVAL = 0.5  # s, between two pictures
+_INTERVAL = 0.5  # s between two updates
 
 
 @attrs.define
 class _State:
-    """How far a cell is."""
+    """Progress of one configuration."""
 
     total: int
     done: int = 0
@@ -46,10 +47,10 @@ class _State:
 
 
 class _Work:
-    """What there is to do, and what this sitting has done of it, in pairs, which take the time.
+    """Amount of work in pairs, which take nearly all the time: total, and done in this session.
 
     Args:
-        todo: The runs that will be made, or gone on with.
+        todo: The runs to start or resume.
     """
 
     def __init__(self, todo: Iterable[Planned]) -> None:
@@ -60,11 +61,11 @@ class _Work:
 
     @property
     def left(self) -> float:
-        """How many pairs are left of the runs that have not ended."""
+        """Pairs left in runs that have not ended."""
         return sum(self._left.values())
 
     def saw(self, planned: Planned, turn: int) -> None:
-        """A run has finished a turn; those before the first that is seen were made in an earlier sitting."""
+        """Count a finished turn; turns before the first one seen were done in an earlier session."""
         config = planned.cell.config
         turns = config.run.generations * len(config.populations) + 1
         pairs = planned.cell.pairs / turns
@@ -76,28 +77,28 @@ class _Work:
         self._left[planned] = left
 
     def ended(self, planned: Planned, *, finished: bool) -> None:
-        """Nothing is left to do of a run; where it is finished, what was left is done, if any was seen."""
+        """Count the end of a run: if it is finished and was seen running, its remaining pairs are done."""
         left = self._left.pop(planned)
         if finished and planned in self._seen:
             self.done += left
 
     def times(self, elapsed: float) -> list[str]:
-        """Return rate and time left, if anything was done in so many seconds."""
+        """Return rate and time left after *elapsed* seconds; empty if nothing was done."""
         if not self.done or not elapsed:
             return []
         left = duration(elapsed * self.left / self.done)
         return [f"{self.done / elapsed:,.0f} pairs/s", f"{left} left"]
 
     def bar(self) -> ProgressBar:
-        """Return how much of it all is done, in which sitting ever."""
+        """Return a bar of the work done, whether in this session or before."""
         return ProgressBar(total=self._whole or 1, completed=self._whole - self.left)
 
 
 class StudyProgress(Watcher):
-    """Shows the progress of a study; within ``with`` on a terminal, where a table is drawn again and again.
+    """Reports the progress of a study on standard error; a context manager that clears its table at the end.
 
     Args:
-        quiet: Whether to say only what failed.
+        quiet: Whether to report failures only.
     """
 
     def __init__(self, *, quiet: bool) -> None:
@@ -119,7 +120,7 @@ class StudyProgress(Watcher):
             self._live.stop()
 
     def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
-        """Begin with what is done already."""
+        """Count the finished runs, and start."""
         self._headings, self._work = study.headings, _Work(todo)
         for planned in (*done, *todo):
             self._cells.setdefault(planned.cell, _State(0)).total += 1
@@ -139,7 +140,7 @@ class StudyProgress(Watcher):
         self._cells[planned.cell].saw(best)
 
     def on_run_ended(self, planned: Planned, end: End) -> None:
-        """Count a run as what became of it; say so where there is no table."""
+        """Count the end of a run; print a line if there is no table."""
         state = self._cells[planned.cell]
         state.running -= 1
         self._work.ended(planned, finished=end.state == "finished")
@@ -151,11 +152,11 @@ class StudyProgress(Watcher):
             state.elsewhere += 1
         if end.state == "failed" or not (self._quiet or self._live is not None):
             what = f"failed: {end.cause}" if end.state == "failed" else end.state
-            best = "" if end.score is None else f", best pair {end.score:.5g}"
+            best = "" if end.score is None else f", best pair {quantity(end.score, planned.cell.unit)}"
             self._console.print(f"{planned.label}: {what}{best}  {self._tally()}", soft_wrap=True)
 
     def on_tick(self) -> None:
-        """Draw the table anew, if there is one."""
+        """Redraw the table, if there is one."""
         now = time.monotonic()
         if self._live is not None and now - self._drawn >= _INTERVAL:
             self._drawn = now
@@ -166,8 +167,8 @@ class StudyProgress(Watcher):
                     *cell.values,
                     f"{state.done}/{state.total}",
                     str(state.running or ""),
-                    "" if state.best is None else f"{state.best:.5g}",
-                    "" if median is None else f"{median:.5g}",
+                    "" if state.best is None else quantity(state.best, cell.unit),
+                    "" if median is None else quantity(median, cell.unit),
                 )
             self._live.update(Group(table, Text(self._tally()), self._work.bar()), refresh=True)
 
@@ -181,12 +182,12 @@ class StudyProgress(Watcher):
         if failed:
             parts.append(f"{failed} failed")
         if elsewhere:
-            parts.append(f"{elsewhere} left to others")
+            parts.append(f"{elsewhere} running in other processes")
         return ", ".join([*parts, *self._work.times(time.monotonic() - self._started)])
 
 
 def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:
-    """Return an empty table with a row for each configuration: what distinguishes it, then its figures."""
+    """Return an empty table with columns for the keys of the grid, then *figures*."""
     table = Table(box=None, header_style="bold")
     for heading in headings:
         table.add_column(heading, overflow="fold")
@@ -196,7 +197,7 @@ def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:
 
 
 def duration(seconds: float) -> str:
-    """Return a duration for a person: ``40 s``, ``12 min``, ``3 h 20 min``."""
+    """Return a duration as people read it: ``40 s``, ``12 min``, ``3 h 20 min``."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)

@@ -18,6 +18,7 @@ from evoframe.cli.context import (
 )
 from evoframe.config import Layer
 from evoframe.designs import keep_of_job, read_job, verify_job
+from evoframe.messages import quantity
 from evoframe.record import Finding, Verification
 
 __all__ = ["verification_table", "verify"]
@@ -34,7 +35,7 @@ Examples:
 @click.argument("sources", metavar="RUN|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @preset_option
 @set_option
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, with full precision.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON with full precision.")
 @workers_option
 @common_options
 @click.pass_context
@@ -46,10 +47,10 @@ def verify(
     as_json: bool,
     workers: list[Layer],
 ) -> None:
-    """Simulate designs again with one thing changed at a time, and print what is left of their scores.
+    """Test what a score depends on: simulate again with one setting changed at a time.
 
-    A RUN is a run's directory and stands for its champion; the table is also kept there, unless --preset or
-    --set change how it is simulated. A FILE is what evoframe simulate takes.
+    A RUN is the directory of a run, for its champion; the table is also saved there, unless --preset or
+    --set change the simulation. A FILE is any file that evoframe simulate reads.
     """
     jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True) for path in sources]
     found = [(job, verify_job(job)) for job in jobs]
@@ -61,37 +62,34 @@ def verify(
         for label, verification in labelled:
             console.print(label, style="bold", soft_wrap=True)
             console.print(verification_table(verification))
-    for job, verifications in found:  # what cannot be kept was seen at least
+    for job, verifications in found:  # after printing, which needs no writable directory
         keep_of_job(job, verifications)
 
 
 def verification_table(verification: Verification) -> Table:
-    """Return the table of a verification for a person; the first row is the unchanged design."""
+    """Return a verification as a table; the first row is the unchanged design."""
     unit = verification.unit
     table = Table(box=None, header_style="bold")
     table.add_column("variant", overflow="fold")
-    table.add_column("displacement" if unit == "m" else "score", overflow="fold")
+    table.add_column("score", overflow="fold")
     table.add_column("of unchanged", justify="right", no_wrap=True)
     for finding in verification.rows:
         share = verification.share(finding)
         table.add_row(finding.name, _outcome(finding, unit), "-" if share is None else f"{share:z.0%}")
     if verification.score is not None and verification.score != verification.unchanged.value:
-        table.add_row("in its run", f"{_digits(verification.score)} {unit}".rstrip(), "")
+        table.add_row("score in the run", quantity(verification.score, unit), "")
     return table
 
 
 def _outcome(finding: Finding, unit: str) -> str:
-    """Return what became of a design: its score, or the median and range of several draws."""
+    """Return the score of a variant, or the median and range of its draws."""
     values, lost = finding.values, finding.diverged_at
-    parts = [] if finding.median is None else [f"{_digits(finding.median)} {unit}".rstrip()]
+    parts = [] if finding.median is None else [quantity(finding.median, unit)]
     if len(values) > 1:
-        parts.append(f"{_digits(values[0])} to {_digits(values[-1])} in {len(values)} draws")
+        least, greatest = (quantity(value, unit) for value in (values[0], values[-1]))
+        parts.append(f"{least} to {greatest} in {len(values)} draws")
     if lost:
         share = "" if len(finding.scores) == 1 else f"{len(lost)} of {len(finding.scores)} "
         steps = f"step {lost[0]}" if lost[0] == lost[-1] else f"steps {lost[0]} to {lost[-1]}"
         parts.append(f"{share}diverged at {steps}")
     return ", ".join(parts)
-
-
-def _digits(value: float) -> str:
-    return f"{value:z.5g}"  # z: without a negative zero

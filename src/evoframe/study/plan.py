@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import attrs
 
 from evoframe.config import Layer, Layers, layer_of, read_layers, resolve_layers
-from evoframe.contract import RunConfig
+from evoframe.contract import RunConfig, unit_of
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError
 from evoframe.evolution import first_meetings
@@ -54,6 +54,11 @@ class Cell:
     def label(self) -> str:
         """What a person calls it: ``aggregator=am, collaboration.n=2``."""
         return ", ".join(f"{key}={shown(value)}" for key, value in self.settings) or "all"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the scores; empty if the objective does not state one."""
+        return unit_of(self.config.objective.component)
 
     @property
     def values(self) -> list[str]:
