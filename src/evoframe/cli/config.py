@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
-from evoframe.cli.context import common_options, configuration_argument, plugins_of, set_option
-from evoframe.config import load_config
+from evoframe.cli.context import (
+    command,
+    common_options,
+    configuration_argument,
+    plugins_of,
+    set_option,
+)
+from evoframe.cli.writing import STDOUT, write_file
+from evoframe.config import commented, load_config, starter
 
 __all__ = ["config"]
 
@@ -16,19 +25,43 @@ def config() -> None:
     """Print configurations, or write a new one."""
 
 
-_EPILOG = """\b
+@config.command(
+    epilog="""\b
 Examples:
   evoframe config show
+  evoframe config show --comments | less
   evoframe config show my.toml --set aggregator=gm > resolved.toml
 """
-
-
-@config.command(epilog=_EPILOG)
+)
 @configuration_argument
 @set_option
+@click.option("--comments", is_flag=True, help="Add the meaning, type and range of every option.")
 @common_options
 @click.pass_context
-def show(ctx: click.Context, source: str, overrides: tuple[str, ...]) -> None:
+def show(ctx: click.Context, source: str, overrides: tuple[str, ...], comments: bool) -> None:
     """Check a configuration and print it with every default."""
     resolved = load_config(source, overrides=overrides, plugins=plugins_of(ctx))
-    click.echo(resolved.to_toml(), nl=False)
+    click.echo(commented(resolved) if comments else resolved.to_toml(), nl=False)
+
+
+@config.command(
+    epilog="""\b
+Examples:
+  evoframe config new my.toml
+  evoframe config new my.toml --preset bending
+"""
+)
+@click.argument("path", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True))
+@click.option("--preset", default="paper", show_default=True, metavar="P", help="Preset to start from.")
+@click.option("--force", is_flag=True, help="Overwrite a file with different content.")
+@common_options
+@click.pass_context
+def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
+    """Write a configuration to start from, with a comment on every option.
+
+    FILE must end in .toml; - is standard output. Every option is commented out and has its default.
+    """
+    text = starter(load_config(preset, plugins=plugins_of(ctx)), preset)
+    write_file(path, text.encode(), force=force)
+    if path != STDOUT:
+        click.echo(f"To run it: {command(ctx, 'run', path)}", err=True)

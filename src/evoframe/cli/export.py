@@ -7,13 +7,11 @@ from pathlib import Path
 import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
+from evoframe.cli.writing import STDOUT, write_file
 from evoframe.designs import export_job, read_job
-from evoframe.errors import InputError, RunError
-from evoframe.files import write_atomically
 
 __all__ = ["export"]
 
-_STDOUT = Path("-")
 _EPILOG = """\b
 Examples:
   evoframe export runs/paper-1 --to vxa
@@ -58,28 +56,6 @@ def export(
         click.echo(f"Warning: not exported: {entry}", err=True)
     default = job.path / f"champion.{format_}" if job.run else job.path.with_suffix(f".{format_}")
     path = out or default
-    if path == _STDOUT:
-        click.echo(exported.data, nl=False)
-    else:
-        _write(path, exported.data, force)
+    write_file(path, exported.data, force=force)
+    if path != STDOUT:
         click.echo(path)
-
-
-def _write(path: Path, data: bytes, force: bool) -> None:
-    """Write a file; overwrite different content only with *force*."""
-    try:
-        if path.exists() and not path.is_file():
-            path.write_bytes(data)  # a device or a pipe; a directory refuses
-            return
-        if path.exists() and path.read_bytes() == data:
-            return
-        if path.exists() and not force:
-            raise InputError(
-                "exists with different content; overwrite it with --force, or choose another --out",
-                source=path,
-            )
-        write_atomically(path, data)
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror}", source=path) from error
-    except RunError as error:
-        raise InputError(error.problem, source=error.source, key=error.key) from error

@@ -1,11 +1,13 @@
 """Configurations: presets, files and overrides become one checked value."""
 
+from evoframe.config.commented import commented, starter
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
 from evoframe.config.resolve import load_config, named_simulator, resolve_layers
 
 __all__ = [
     "Layer",
     "Layers",
+    "commented",
     "layer_of",
     "layers_in",
     "layers_of",
@@ -14,4 +16,5 @@ __all__ = [
     "preset_names",
     "read_layers",
     "resolve_layers",
+    "starter",
 ]
