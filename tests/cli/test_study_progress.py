@@ -104,7 +104,7 @@ class TestProgress:
         progress.on_begin(study, [second], {first: row})
         progress.on_run_started(second)
         progress.on_run_ended(second, End("elsewhere"))
-        line = f"{second.label}: elsewhere  1/2 runs done, 0 running, 0 left, 1 left to others"
+        line = f"{second.label}: elsewhere  1/2 runs done, 0 running, 0 left, 1 running in other processes"
         assert capsys.readouterr().err == f"{line}\n"
 
     def test_quiet_shows_only_what_failed(self, study: Study, capsys: pytest.CaptureFixture[str]) -> None:

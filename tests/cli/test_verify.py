@@ -13,6 +13,7 @@ from processes import Evoframe
 from recorded import written
 
 from evoframe import load_run
+from evoframe.messages import quantity
 
 TOYS = ["-p", toys.__file__]
 PUBLISHED = Path(__file__).parents[1] / "data" / "paper_preset.npz"
@@ -36,7 +37,7 @@ def designs(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def published(tmp_path: Path) -> Path:
-    """The three published bodies of paper.md: AFPO, NEAT and HyperNEAT."""
+    """The three published bodies (docs/experiment.md): AFPO, NEAT and HyperNEAT."""
     path = tmp_path / "published.npz"
     with np.load(PUBLISHED) as data:
         chosen = {name: data[name][[0, 3, 6]] for name in ("material", "phase_cycles")}
@@ -54,15 +55,16 @@ class TestRun:
         verified = evoframe("verify", *TOYS, "here")
         assert verified.returncode == 0, verified.stderr
         title, *table = verified.stdout.splitlines()
+        least, middle, greatest = (quantity(factor * score, "m") for factor in (0.9, 1.0, 1.1))
         assert title == "here"
         assert [columns(line) for line in table] == [
-            ["variant", "displacement", "of unchanged"],
-            ["unchanged", f"{score:.5g} m", "100%"],
-            ["gain off", "0 m", "0%"],
+            ["variant", "score", "of unchanged"],
+            ["unchanged", middle, "100%"],
+            ["gain off", "0 mm", "0%"],
             ["no room", "diverged at step 1", "-"],
             [
                 "one number jittered by 10 %",
-                f"{score:.5g} m, {0.9 * score:.5g} to {1.1 * score:.5g} in 4 draws",
+                f"{middle}, {least} to {greatest} in 4 draws",
                 "100%",
             ],
         ]
@@ -91,13 +93,14 @@ class TestRun:
         champion["score"] = 0.125
         path.write_text(json.dumps(champion))
         table = evoframe("verify", *TOYS, path).stdout.splitlines()
-        assert columns(table[-1]) == ["in its run", "0.125 m"]
+        assert columns(table[-1]) == ["score in the run", "125 mm"]
 
     def test_that_is_no_run_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
         (tmp_path / "empty").mkdir()
         refused = evoframe("verify", "empty", "nowhere")
         assert refused.returncode == 2
-        assert refused.stderr == ("Error: empty: is no run's directory: there is no config.toml\n")
+        assert refused.stderr.startswith("Error: empty: ")
+        assert "config.toml" in refused.stderr
 
 
 class TestFile:
@@ -125,18 +128,19 @@ class TestFile:
     def test_without_variants_is_refused(self, evoframe: Evoframe, toy_run: Path) -> None:
         refused = evoframe("verify", *TOYS, "here", "--set", "simulator=toy-product")
         assert refused.returncode == 2
-        assert "here: the simulator 'toy-product' offers no variants of a simulation" in refused.stderr
+        assert refused.stderr.startswith("Error: here: ")
+        assert "'toy-product'" in refused.stderr
 
     def test_with_a_mistake_in_what_is_set_is_refused(self, evoframe: Evoframe, toy_run: Path) -> None:
         refused = evoframe("verify", *TOYS, "here", "--set", "simulator.speed=1")
         assert refused.returncode == 2
-        assert "--set simulator.speed=1: simulator.speed: unknown option" in refused.stderr
+        assert "--set simulator.speed=1: simulator.speed: " in refused.stderr
 
 
 def test_the_published_bodies_move_without_contraction_and_hardly_without_collisions(
     evoframe: Evoframe, published: Path
 ) -> None:
-    """paper.md, "What the published setting really rewards"."""
+    """docs/experiment.md, "What the setting rewards"."""
     documents = json.loads(evoframe("verify", published, "--json", "--workers", 2).stdout)
     tables = [{row["name"]: row for row in document["variants"]} for document in documents]
     still = [table["contraction off"]["median"] for table in tables]
@@ -150,7 +154,7 @@ def test_the_published_bodies_move_without_contraction_and_hardly_without_collis
 def test_a_champion_of_the_paper_is_verified_with_its_run(evoframe: Evoframe, tmp_path: Path) -> None:
     ran = evoframe("run", "quick", "--set", "run.generations=1", "--out", "here")
     assert ran.returncode == 0, ran.stderr
-    assert re.search(r"\n contraction off +\S+ m +-?\d+%", ran.stdout)
+    assert re.search(r"\n contraction off +\S+ mm +-?\d+%", ran.stdout)
     kept = json.loads((tmp_path / "here" / "verification.json").read_text())
     [verified] = json.loads(evoframe("verify", "here", "--json", "--workers", 1).stdout)
     assert verified == {"body": "here", **kept}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,7 @@ def test_every_key_has_a_comment_above_it() -> None:
     config = load_config("paper")
     lines = commented(config).splitlines()
     keys = {line.split(" = ")[0] for line in lines if " = " in line and not line.startswith("#")}
-    for above, line in zip(lines, lines[1:], strict=False):
+    for above, line in itertools.pairwise(lines):
         if " = " in line and not line.startswith(("#", "name = ")):
             assert above.startswith("#"), line
     named = {key.rpartition(".")[2].partition("[")[0] for key, _ in leaves(config.tables())}
