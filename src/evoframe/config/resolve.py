@@ -10,6 +10,7 @@ from typing import Any, TypeVar, cast
 import attrs
 from attrs import validators
 
+from evoframe.config.labels import label_of
 from evoframe.config.layers import Layer, Layers, layer_of, read_layers
 from evoframe.contract import (
     COMPONENTS,
@@ -52,7 +53,10 @@ def load_config(
     """
     if not isinstance(source, str | Path):
         raise TypeError(f"a configuration is named by a preset or a file, not by {type(source).__name__}")
-    return resolve_layers(read_layers(source, overrides), Path(source).stem, plugins or discover())
+    base = read_layers(source)
+    layers = base.under(overrides)
+    label = label_of(source, layers.layers[len(base.layers) :])
+    return resolve_layers(layers, label, plugins or discover())
 
 
 def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
