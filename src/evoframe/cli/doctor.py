@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from evoframe.cli.context import common_options, output, plugins_of
+from evoframe.cli.sources import with_runs_of_studies
 from evoframe.errors import InputError
 from evoframe.messages import full_text
 from evoframe.registry import Plugins
@@ -29,7 +30,7 @@ _STYLES: dict[State, str] = {"ok": "green", "note": "yellow", "problem": "bold r
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("directories", metavar="[RUN]...", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("directories", metavar="[RUN|STUDY]...", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @common_options
 @click.pass_context
@@ -43,7 +44,10 @@ def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> 
     """
     found = plugins_of(ctx)
     refused: list[InputError] = []
-    checks = {str(directory): _checks(directory, found, refused) for directory in directories}
+    checks = {
+        str(directory): _checks(directory, found, refused)
+        for directory in with_runs_of_studies(ctx, directories)
+    }
     if not directories:
         checks["installation"] = list(check_installation(found))
     if as_json:

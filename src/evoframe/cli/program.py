@@ -44,7 +44,7 @@ COMMANDS: Mapping[str, str] = {
     "export": "Write a design and its settings in the file format of another program.",
     "plugins": "List plugins and the components that they offer.",
     "report": "Write the report of a run or study: figures, tables, conclusions and an interactive page.",
-    "resume": "Resume an interrupted run from its last complete turn.",
+    "resume": "Resume an interrupted run from its last complete turn, or a study.",
     "robustness": "Compare bodies by their scores under the same random controllers.",
     "run": "Run one coevolution.",
     "simulate": "Simulate designs and print their scores.",

@@ -8,9 +8,11 @@ import click
 
 from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
 from evoframe.cli.playing import play, show_end
+from evoframe.cli.study import study
 from evoframe.config import Layer
 from evoframe.record import open_run
 from evoframe.runs import configuration_of, is_finished, reopen
+from evoframe.study import is_study
 
 __all__ = ["resume"]
 
@@ -23,7 +25,7 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("directory", metavar="RUN", type=click.Path(path_type=Path))
+@click.argument("directory", metavar="RUN|STUDY", type=click.Path(path_type=Path))
 @click.option(
     "--allow-different-versions",
     is_flag=True,
@@ -40,12 +42,17 @@ def resume(
     overrides: tuple[str, ...],
     workers: list[Layer],
 ) -> None:
-    """Resume an interrupted run from its last complete turn.
+    """Resume an interrupted run from its last complete turn, or a study.
 
     RUN is the directory of a run. The result is bit for bit that of an uninterrupted run, with any number
     of workers. Only settings of the executor may change: with another configuration, other versions or
-    another type of machine, evoframe reports the differences and does not resume.
+    another type of machine, evoframe reports the differences and does not resume. STUDY is the directory of
+    a study, which continues as with evoframe study.
     """
+    if is_study(directory):
+        at_once = next((layer.tree["executor"]["workers"] for layer in workers), 0)
+        ctx.invoke(study, source=str(directory), overrides=overrides, workers=at_once)
+        return
     plugins = plugins_of(ctx)
     settings: list[str | Layer] = [*overrides, *workers]
     with open_run(directory) as run:

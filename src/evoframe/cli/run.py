@@ -14,6 +14,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.playing import play
+from evoframe.cli.sources import refuse_run_and_study
 from evoframe.config import Layer, layer_of, load_config
 from evoframe.runs import prepare
 
@@ -57,6 +58,7 @@ def run(
     saved: Ctrl-C stops after the turn in progress, a second Ctrl-C at once, and evoframe resume continues.
     At the end, the champion is verified as by evoframe verify.
     """
+    refuse_run_and_study(ctx, source)
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     plugins = plugins_of(ctx)
     config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins)

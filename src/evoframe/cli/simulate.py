@@ -20,6 +20,7 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
+from evoframe.cli.sources import with_runs_of_studies
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
 from evoframe.designs import Job, naming, read_job, simulate_job, trace_of
@@ -36,7 +37,9 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("files", metavar="RUN|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument(
+    "files", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
 @preset_option
 @set_option
 @click.option(
@@ -67,10 +70,14 @@ def simulate(
     """Simulate designs and print their scores.
 
     A RUN is the directory of a run, or its champion.json: the champion is simulated with the run's settings.
+    A STUDY is the directory of a study, for the champions of its runs.
     A FILE is an .npz file with the arrays material ([X,Y,Z] or [N,X,Y,Z]; codes: 0 empty, 1 passive,
     3 contractile) and phase_cycles of the same shape, or a .vxa file, which contains its own settings.
     """
-    jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True) for path in files]
+    jobs = [
+        read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True)
+        for path in with_runs_of_studies(ctx, files)
+    ]
     if trace is not None:
         _write_trace(trace, jobs)
     scored_jobs = [(job, simulate_job(job)) for job in jobs]

@@ -11,9 +11,19 @@ from rich.table import Table
 
 from evoframe.cli.context import common_options, is_quiet, modules_of, output, plugins_of, set_option
 from evoframe.cli.signals import stop_on_signals
+from evoframe.cli.sources import refuse_preset
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
 from evoframe.messages import quantity
-from evoframe.study import StudyPlan, StudyResult, plan_study, read_study, run_study, study_names
+from evoframe.study import (
+    STUDY_FILE,
+    StudyPlan,
+    StudyResult,
+    is_study,
+    plan_study,
+    read_study,
+    run_study,
+    study_names,
+)
 
 __all__ = ["study"]
 
@@ -21,7 +31,8 @@ _EPILOG = """\b
 Examples:
   evoframe study small                        an example that takes a minute
   evoframe study paper --dry-run              600 runs: time and disk space
-  evoframe study paper --out studies/paper    start it, or continue it
+  evoframe study paper                        start it, in studies/paper
+  evoframe study studies/paper                continue it
   evoframe study paper --set 'grid={"collaboration.n"=[2], aggregator=["am", "wm"]}'
   evoframe study paper --import docs/results/paper/rows.csv
 """
@@ -77,6 +88,9 @@ def study(
     seed of each run derives from its configuration and index alone. At the end, rows.csv has one row for each
     run, and curves.csv its progress turn by turn.
     """
+    refuse_preset(ctx, source)
+    if is_study(Path(source)):
+        out, source = out or Path(source), str(Path(source) / STUDY_FILE)
     found = read_study(source, overrides, plugins_of(ctx))
     modules = modules_of(ctx)
     if dry_run:

@@ -16,6 +16,7 @@ from evoframe.cli.context import (
     set_option,
     workers_option,
 )
+from evoframe.cli.sources import with_runs_of_studies
 from evoframe.config import Layer
 from evoframe.designs import keep_of_job, read_job, verify_job
 from evoframe.messages import quantity
@@ -32,7 +33,9 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("sources", metavar="RUN|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument(
+    "sources", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
 @preset_option
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON with full precision.")
@@ -50,9 +53,13 @@ def verify(
     """Test what a score depends on: simulate again with one setting changed at a time.
 
     A RUN is the directory of a run, for its champion; the table is also saved there, unless --preset or
-    --set change the simulation. A FILE is any file that evoframe simulate reads.
+    --set change the simulation. A STUDY is the directory of a study, for its runs. A FILE is any file that
+    evoframe simulate reads.
     """
-    jobs = [read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True) for path in sources]
+    jobs = [
+        read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True)
+        for path in with_runs_of_studies(ctx, sources)
+    ]
     found = [(job, verify_job(job)) for job in jobs]
     labelled = [pair for job, verifications in found for pair in zip(job.labels, verifications, strict=True)]
     if as_json:

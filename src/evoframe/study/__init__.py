@@ -2,6 +2,7 @@
 
 from evoframe.study.api import StudyPlan, StudyResult, plan_study, run_study
 from evoframe.study.conduct import STUDY_FILE, Watcher, claim, survey
+from evoframe.study.directory import is_study, runs_in
 from evoframe.study.estimate import Estimate
 from evoframe.study.gathered import IMPORTED, gather, imported_rows
 from evoframe.study.names import called, headings, name_of, title_of
@@ -30,12 +31,14 @@ __all__ = [
     "gather",
     "headings",
     "imported_rows",
+    "is_study",
     "name_of",
     "plan_study",
     "read_rows",
     "read_study",
     "row_of",
     "run_study",
+    "runs_in",
     "score_curve",
     "shown",
     "study_names",
