@@ -1,4 +1,4 @@
-"""Resolution of presets, files and overrides into a configuration, checked as a whole before anything runs."""
+"""Resolution of presets, files and overrides into a configuration, checked completely before a run."""
 
 from __future__ import annotations
 
@@ -210,9 +210,7 @@ class _Reading:
         if role in _RESERVED_ROLES:
             self.faults.append(Fault(path, f"'{role}' is a column name of the database; choose another role"))
         elif not is_role(role):
-            message = (
-                f"invalid role '{role}'; use lower-case letters, digits, - and _, beginning with a letter"
-            )
+            message = f"invalid role '{role}'; use lower-case letters, digits, - and _, with a letter first"
             self.faults.append(Fault(path, message))
         if not isinstance(table, Mapping):
             self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
