@@ -1,8 +1,8 @@
 """The protocols of components.
 
 A component is a *frozen attrs class*, whose fields are its options. ``start`` returns the objects that have
-state during a run. Optional capabilities are in :mod:`evoframe.contract.optional`. The laws that each protocol
-names are tested by :mod:`evoframe.testing`.
+state during a run. Optional capabilities are in :mod:`evoframe.contract.optional`.
+:mod:`evoframe.testing` tests the laws that each protocol names.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Discovery of plugins; a plugin that fails to load is skipped."""
+"""Discovery of plugins; an installed plugin that fails to load is skipped."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _load_local(plugins: Plugins, module: str) -> None:
         plugins.add(_import_local(module, name), Source(name, "local", name))
     except (Exception, SystemExit) as error:
         cause = cause_of(error)
-        raise PluginError(f"plugin module '{module}' cannot be used: {cause}") from error
+        raise PluginError(f"cannot be used as a plugin: {cause}", source=module) from error
 
 
 def _import_local(module: str, name: str) -> ModuleType:
