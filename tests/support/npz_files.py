@@ -1,4 +1,4 @@
-"""``.npz`` files with bodies of voxels, valid and damaged."""
+"""``.npz`` files with bodies of voxels, sound and damaged."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ZERO = np.zeros(CELLS)
 
 def npy(array: Any, version: tuple[int, int] | None = None) -> bytes:
     file = io.BytesIO()
-    with warnings.catch_warnings(action="ignore"):  # numpy prefers version 1
+    with warnings.catch_warnings(action="ignore"):  # numpy would rather write version 1
         np.lib.format.write_array(file, np.asarray(array), version)
     return file.getvalue()
 
@@ -42,20 +42,20 @@ def zipped(
 ) -> bytes:
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", method) as archive, warnings.catch_warnings(action="ignore"):
-        for name, content in members:  # zipfile warns about repeated names
+        for name, content in members:  # of a name that is there already, zipfile warns
             archive.writestr(name, content)
     return change(file.getvalue())
 
 
 def bodies(material: Any = SOLID, phase_cycles: Any = ZERO, **options: Any) -> bytes:
-    """Return an .npz file; each member is given as an array or as bytes."""
+    """Return an .npz file; a member is given as an array, or as its bytes."""
     members = {"material.npy": material, "phase_cycles.npy": phase_cycles}
     packed = ((name, given if isinstance(given, bytes) else npy(given)) for name, given in members.items())
     return zipped(*packed, **options)
 
 
 def encrypted(content: bytes) -> bytes:
-    """Set the encryption flag of every entry, in the local header and in the directory."""
+    """Set the flag at every entry, in both of its places."""
     changed = bytearray(content)
     for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         at = content.find(signature)
@@ -66,7 +66,7 @@ def encrypted(content: bytes) -> bytes:
 
 
 def garbled(content: bytes) -> bytes:
-    """Overwrite the compressed bytes of the first entry."""
+    """Overwrite the packed bytes of the first entry."""
     start = 30 + len("material.npy")
     return content[:start] + b"\xff" * 20 + content[start + 20 :]
 
@@ -154,4 +154,4 @@ DAMAGED = [
         id="no phases",
     ),
 ]
-"""Files without two valid arrays, each with a pattern of its error."""
+"""Files that do not have the two arrays whole, with what is wrong with each."""
