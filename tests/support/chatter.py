@@ -1,4 +1,4 @@
-"""A worker of a study that reports without a pause, in a module that its process can import."""
+"""A worker of a study that tells without a pause, in a module that its process can import."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from evoframe.study.pool import _talk
 
 
 def chatter(number: int) -> None:
-    """Report the process id instead of turns until the worker is told to stop."""
+    """Tell in place of a turn which process this is, until it is asked to stop."""
     talk = _talk(number)
     while not talk.stop():
         talk.tell(os.getpid(), None)
