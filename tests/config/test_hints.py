@@ -119,3 +119,8 @@ def test_a_known_key_is_similar_to_itself(key: str) -> None:
 @given(st.text("abcdefghijklmnopqrstuvwxyz_.", min_size=1, max_size=12))
 def test_only_known_keys_are_suggested(key: str) -> None:
     assert set(similar_keys(key, keys_of())) <= set(keys_of())
+
+
+def test_a_kind_is_suggested_only_if_its_key_is_known() -> None:
+    assert similar_keys("strategi", ["run", "collaboration"]) == ["collaboration"]
+    assert similar_keys("strategi", ["run"]) == []

@@ -43,7 +43,8 @@ def similar_keys(key: str, known: Sequence[str]) -> list[str]:
     exact = [each for each in known if f".{each}".endswith(f".{_ALIASES.get(key, key)}")]
     if exact:
         return exact
-    words = {each.rpartition(".")[2] for each in known} | _ALIASES.keys()
+    words = {each.rpartition(".")[2] for each in known}
+    words |= {kind for kind, section in _ALIASES.items() if section in known}
     close = difflib.get_close_matches(key, sorted(words), n=1, cutoff=0.75)
     return [each for word in close for each in similar_keys(word, known)]
 
