@@ -145,7 +145,7 @@ class TestFaults:
         assert (fault.source, fault.key) == (str(toy_file), "populations.b.encoder")
         assert "requires the role 'a'" in fault.problem
 
-    def test_a_role_that_the_simulator_requires_is_missed(self, toy_config: Load) -> None:
+    def test_a_role_that_the_simulator_requires_must_be_provided(self, toy_config: Load) -> None:
         [fault] = faults_of(lambda: toy_config("simulator=toy-demanding"))
         assert (fault.source, fault.key) == ("--set simulator=toy-demanding", "simulator")
         assert "'morphology'" in fault.problem

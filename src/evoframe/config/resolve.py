@@ -176,9 +176,9 @@ class _Reading:
         component = self._structured(options, offer.component, path)
         if component is None:
             return None
-        breaches = [Fault(path, message) for message in _breaches(offer, component)]
-        self.faults += breaches
-        return None if breaches else Chosen(table["name"], component, offer.source)
+        violations = [Fault(path, message) for message in _violations(offer, component)]
+        self.faults += violations
+        return None if violations else Chosen(table["name"], component, offer.source)
 
     def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
         try:
@@ -290,7 +290,7 @@ class _Checks:
             yield from _refusal(("objective",), check, involves=("simulator",))
 
 
-def _breaches(offer: Offer, component: Any) -> Iterator[str]:
+def _violations(offer: Offer, component: Any) -> Iterator[str]:
     """Yield the violations of the protocol of a component's kind."""
     where = f"{offer.kind} '{offer.name}' of plugin {offer.source}"
     protocol = KINDS[offer.kind].protocol

@@ -84,11 +84,11 @@ class Coevolution:
     def __iter__(self) -> Iterator[Turn]:
         """Yield the initial turn, then the turns of the populations, then the final turn if required."""
         if self.turn < 0:
-            yield self._initial_cross()
+            yield self._initial_turn()
         while self.turn < self.length:
             yield self._take_turn(self.turn % len(self.populations))
         if not self._fittest_have_met:
-            yield self._play([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
+            yield self._complete_turn([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
 
     def __enter__(self) -> Self:
         return self
@@ -129,19 +129,19 @@ class Coevolution:
         """Shut down the workers."""
         self.evaluator.close()
 
-    def _initial_cross(self) -> Turn:
+    def _initial_turn(self) -> Turn:
         started = time.perf_counter()
         for population in self.populations:
             population.reproduce()
         met = first_meetings([len(population.genomes) for population in self.populations])
-        return self._play(met, range(len(self.populations)), statistics.fmean, started)
+        return self._complete_turn(met, range(len(self.populations)), statistics.fmean, started)
 
     def _take_turn(self, index: int) -> Turn:
         started = time.perf_counter()
         self.populations[index].reproduce()
         teams = list(zip(*self._chosen(index), strict=True))
         met = _meetings(index, len(self.populations[index].genomes), teams)
-        return self._play(met, [index], self.aggregator.aggregate, started)
+        return self._complete_turn(met, [index], self.aggregator.aggregate, started)
 
     def _chosen(self, index: int) -> list[list[int]]:
         """Return the positions of the collaborators from each population except one.
@@ -167,7 +167,9 @@ class Coevolution:
     def _fittest(self) -> Meeting:
         return tuple(population.fittest() for population in self.populations)
 
-    def _play(self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float) -> Turn:
+    def _complete_turn(
+        self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float
+    ) -> Turn:
         """Score all *meetings* of a turn, which are unique, and evaluate the *judged* populations."""
         simulated = self.evaluator.simulations
         scores = self._scores(meetings)
@@ -261,11 +263,11 @@ def first_meetings(sizes: Sequence[int]) -> list[Meeting]:
     """
     met: dict[Meeting, None] = {}
     for index, size in enumerate(sizes):
-        met.update(dict.fromkeys(_meetings(index, size, _everyone_else(index, sizes))))
+        met.update(dict.fromkeys(_meetings(index, size, _teams_of_others(index, sizes))))
     return list(met)
 
 
-def _everyone_else(index: int, sizes: Sequence[int]) -> list[Meeting]:
+def _teams_of_others(index: int, sizes: Sequence[int]) -> list[Meeting]:
     """Return teams that include every member of the other populations; members of small ones recur."""
     others = [size for i, size in enumerate(sizes) if i != index]
     return [tuple(position % size for size in others) for position in range(max(others))]

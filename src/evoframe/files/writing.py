@@ -39,7 +39,7 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise RunError(f"cannot be written: {error.strerror}", source=path) from error
 
 
-# Without the check, a value that contains itself raises RecursionError.
+# Without this check, a value that contains itself raises RecursionError.
 _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False, check_circular=False).encode
 
 

@@ -61,7 +61,7 @@ class WorkerProcesses:
     ) -> None:
         self._outstanding: set[Future[Any]] = set()
         self._pool = pebble.ProcessPool(
-            workers, initializer=_begin, initargs=[initializer, *initargs], context=self.context
+            workers, initializer=_initialize, initargs=[initializer, *initargs], context=self.context
         )
 
     @property
@@ -79,7 +79,7 @@ class WorkerProcesses:
             arguments: Arguments of the function.
             time_limit: Time after which the worker is stopped, s.
         """
-        with _interrupts_held_back():  # inherited by new processes: only the parent handles Ctrl-C
+        with _sigint_blocked():  # inherited by new processes: only the parent handles Ctrl-C
             future = self._pool.schedule(function, arguments, timeout=time_limit)
         self._outstanding.add(future)
         future.add_done_callback(self._outstanding.discard)
@@ -103,7 +103,7 @@ class WorkerProcesses:
 
 
 @contextlib.contextmanager
-def _interrupts_held_back() -> Iterator[None]:
+def _sigint_blocked() -> Iterator[None]:
     """Block SIGINT in this thread, if the platform supports it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -115,7 +115,7 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
-def _begin(initializer: Callable[..., object] | None, *initargs: Any) -> None:
+def _initialize(initializer: Callable[..., object] | None, *initargs: Any) -> None:
     _end_with_parent()
     if initializer is not None:
         initializer(*initargs)
