@@ -1,4 +1,4 @@
-"""Settings of the whole suite."""
+"""Settings of the test suite."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import hypothesis
 
 pytest_plugins = ["toy_fixtures"]
 
-# A job in a shell's background ignores Ctrl-C, and so would the programs that tests start and interrupt.
+# A background job of a shell ignores SIGINT, and so would the programs that tests start and interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# One profile everywhere: what fails in CI fails at home, with the same examples.
+# One profile everywhere: a failure in CI can be reproduced locally with the same examples.
 hypothesis.settings.register_profile(
     "evoframe", derandomize=True, deadline=None, max_examples=60, print_blob=True
 )
@@ -20,6 +20,6 @@ hypothesis.settings.load_profile("evoframe")
 
 
 def pytest_collection_finish() -> None:
-    """Let no collection of garbage look through thousands of tests: statsmodels has one with every test."""
+    """Exclude collected tests from garbage collection, which statsmodels triggers in every test."""
     gc.collect()
     gc.freeze()

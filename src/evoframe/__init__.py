@@ -2,8 +2,8 @@
 
 This module is the public API: what a plugin author implements (:data:`hookimpl`, the protocols, the values,
 the errors) and what a user calls from Python (:func:`run`, :func:`load_run`, :func:`verify`,
-:class:`Coevolution`). Each name is loaded when it is first asked for (PEP 562); ``__init__.pyi`` beside this
-file says where from.
+:class:`Coevolution`). Each name is loaded at its first use (PEP 562), from the module that ``__init__.pyi``
+names.
 """
 
 import lazy_loader

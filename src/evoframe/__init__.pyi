@@ -1,4 +1,4 @@
-# Where each name of the public API is defined; read by type checkers, and by lazy_loader in __init__.py.
+# The names of the public API and their modules, for type checkers and for lazy_loader in __init__.py.
 
 from ._version import __version__ as __version__
 from .analysis.api import load_study as load_study, report as report

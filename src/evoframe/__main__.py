@@ -1,6 +1,6 @@
-"""``python -m evoframe``."""
+"""Entry point of ``python -m evoframe``."""
 
 from evoframe.cli import main
 
-if __name__ == "__main__":  # worker processes import it
+if __name__ == "__main__":  # worker processes import this module
     main()

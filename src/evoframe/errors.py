@@ -1,4 +1,4 @@
-"""What can go wrong, as types; every one of them is meant to be read by a person."""
+"""Types of errors, each with a text for users."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class EvoframeError(Exception):
     The text is ``source: key: problem``, without the parts that are empty.
 
     Attributes:
-        problem: Value found, value expected, and what to do.
+        problem: Value found, value expected, and the remedy.
         source: File, directory or command-line option that the error is about.
         key: Dotted key, table or element in it, such as ``populations.controller.size``.
     """
@@ -47,13 +47,13 @@ class EvoframeError(Exception):
 
 
 class ConfigurationError(EvoframeError):
-    """A configuration, or an option of a component, that is not valid.
+    """A configuration, or an option of a component, that is invalid.
 
     Components raise it from methods such as ``check`` with a problem only; the core adds source and key.
 
     Args:
         problem: As for :class:`EvoframeError`, as are *source* and *key*.
-        faults: The errors that this one reports together; the text lists them.
+        faults: Errors that this one reports together; the text lists them.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class ConfigurationError(EvoframeError):
 
     @property
     def faults(self) -> tuple[ConfigurationError, ...]:
-        """The errors reported together; the error itself if it is the only one."""
+        """Errors reported together; the error itself if there is only one."""
         return self._faults or (self,)
 
     def __str__(self) -> str:
@@ -77,40 +77,40 @@ class ConfigurationError(EvoframeError):
 
 
 class InputError(EvoframeError):
-    """A file given by the user that cannot be read, or that is not what it should be."""
+    """A file or directory, given by the user, that cannot be read or is invalid."""
 
 
 class LockedError(InputError):
-    """A run's directory that another process is writing to."""
+    """A run directory that another process is writing to."""
 
 
 class NotEmptyError(InputError):
-    """A directory for a new run that has something in it."""
+    """A directory for a new run that is not empty."""
 
 
 class OccupiedError(NotEmptyError):
-    """A directory for a new run that holds a run already."""
+    """A directory for a new run that already contains a run."""
 
 
 class PluginError(EvoframeError):
-    """A plugin that the configuration asks for cannot be used."""
+    """A plugin that is required but cannot be used."""
 
 
 class RunError(EvoframeError):
-    """A run that cannot go on, or a run directory that cannot be used."""
+    """A run that cannot continue, or a run directory that cannot be used."""
 
 
 @attrs.frozen(str=False, eq=False)
 class ComponentError(RunError):
-    """A component failed, or returned what it must not.
+    """A component that failed or returned an invalid result.
 
     Attributes:
-        component: Its dotted key in a configuration, such as ``aggregator``.
-        problem: What it did.
-        concerns: Which individuals it was about; may be empty.
-        keys: The keys of the designs that it was about, if only they are known.
-        places: Their places among all designs that are evaluated together.
-        offered: Its name, and the plugin that offers it, where that is known.
+        component: Dotted key of the component in the configuration, such as ``aggregator``.
+        problem: Description of the failure.
+        concerns: Individuals affected, such as ``a 1 with b 2``; may be empty.
+        keys: Keys of the designs affected, while the individuals are unknown.
+        places: Indices of these designs among all designs that are evaluated together.
+        offered: Name of the component and the plugin that offers it, if known.
     """
 
     component: str
@@ -127,10 +127,10 @@ class ComponentError(RunError):
 
 
 class WorkerError(RunError):
-    """A worker of an executor was lost, together with the item that it was processing.
+    """The loss of an executor's worker while it was processing an item.
 
     Attributes:
-        item: The item that it was processing.
+        item: The item that the worker was processing.
     """
 
     def __init__(self, problem: str, item: Any) -> None:
@@ -139,4 +139,4 @@ class WorkerError(RunError):
 
 
 class PluginWarning(UserWarning):
-    """A plugin was skipped, or an observer was disabled; the program goes on without it."""
+    """A skipped plugin or a disabled observer; the program continues without it."""

@@ -1,4 +1,4 @@
-"""Parts of messages that a person reads, shared by all rooms."""
+"""Parts of messages, shared by all packages of the core."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ __all__ = ["cause_of", "found", "full_text", "quantity", "suggestion", "unit_fac
 
 
 def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
-    """Return how a message about an unknown *word* ends.
+    """Return the end of a message about an unknown *word*: a close match, and the valid words.
 
     Args:
-        word: What was written.
-        known: What could have been meant.
-        label: What to call a list of all that is known; without it there is none.
+        word: The word found.
+        known: The valid words.
+        label: Heading of the list of valid words; no list if empty.
     """
     words = list(known)
     close = difflib.get_close_matches(word, words, n=1, cutoff=0.5)
@@ -28,17 +28,17 @@ def suggestion(word: str, known: Iterable[str], label: str = "") -> str:
 
 
 def found(value: Any) -> str:
-    """Return *value* as a person wrote it."""
+    """Return *value* in the notation of a configuration file."""
     return json.dumps(value, default=str, ensure_ascii=False)
 
 
 def full_text(error: BaseException) -> str:
-    """Return the text of an error with the hints that were added to it (:meth:`BaseException.add_note`)."""
+    """Return the text of an error and its notes (:meth:`BaseException.add_note`), one per line."""
     return "\n  ".join([str(error), *getattr(error, "__notes__", ())])
 
 
 def cause_of(error: BaseException) -> str:
-    """Return the text of an error as a cause, with the type in front unless it is meant for a person."""
+    """Return the text of an error, with its type in front unless it is an error of evoframe."""
     text = full_text(error)
     return text if isinstance(error, EvoframeError) else f"{type(error).__name__}: {text}"
 

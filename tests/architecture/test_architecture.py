@@ -1,4 +1,4 @@
-"""Who may import whom, and what is public."""
+"""Tests of the boundaries between core and plugins, and of the public API."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import evoframe
 PLUGIN_FILES = sorted(ROOT.glob("plugins/*/evoframe_*/**/*.py"))
 
 
-def test_there_are_plugins() -> None:
+def test_every_plugin_has_files() -> None:
     assert {path.parents[1] for path in PLUGIN_FILES} >= set((ROOT / "plugins").iterdir())
 
 
@@ -31,7 +31,7 @@ def test_the_core_imports_no_plugin(path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", evoframe.__all__)
-def test_public_names_exist_and_say_what_they_are(name: str) -> None:
+def test_public_names_exist_and_are_documented(name: str) -> None:
     value = getattr(evoframe, name)
     if isinstance(value, type | types.FunctionType):
         assert value.__doc__

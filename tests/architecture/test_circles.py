@@ -1,4 +1,4 @@
-"""Imports go in one direction: between modules, and between the parts of each package."""
+"""Tests for import cycles between modules, and between the parts of each package."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ def test_no_modules_import_each_other(name: str) -> None:
 
 @pytest.mark.parametrize(("name", "package"), sorted(INNER))
 def test_no_parts_of_a_package_import_each_other(name: str, package: str) -> None:
-    """Rooms of the core too: what stands in one may not need another that needs it."""
+    """Packages of the core are parts too: two packages must not require each other."""
     assert circles(parts(GRAPHS[name], package)) == []
 
 
 class TestCircles:
-    """A law that finds nothing must be able to find something."""
+    """The checks above can detect cycles."""
 
-    def test_are_found_with_all_that_are_in_them(self) -> None:
+    def test_are_found_with_all_their_members(self) -> None:
         graph = {"a": {"b"}, "b": {"c"}, "c": {"a", "d"}, "d": {"e"}, "e": {"d"}, "f": {"a"}}
         assert circles(graph) == [["a", "b", "c"], ["d", "e"]]
 
-    def test_between_rooms_are_found_where_no_modules_import_each_other(self) -> None:
+    def test_between_packages_are_found_without_a_cycle_of_modules(self) -> None:
         graph = {"h.a.x": {"h.b.x"}, "h.a.y": set[str](), "h.b.x": set[str](), "h.b.y": {"h.a.y"}}
         assert circles(graph) == []
         assert circles(parts(graph, "h")) == [["a", "b"]]
@@ -49,5 +49,5 @@ class TestCircles:
             (tmp_path / "house_of" / f"{name}.py").write_text(text)
         assert circles(uses(tmp_path / "house_of")) == [["house_of.a", "house_of.b"]]
 
-    def test_would_go_through_the_lazy_names_of_the_public_api(self) -> None:
+    def test_include_the_lazy_names_of_the_public_api(self) -> None:
         assert "evoframe.runs.starting" in GRAPHS[CORE.name]["evoframe"]

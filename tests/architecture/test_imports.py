@@ -1,4 +1,4 @@
-"""What may be imported: nothing that is read is executed, and every unusual module says why it is here."""
+"""Tests of imports: no input is executed, and every unusual module has a documented reason."""
 
 from __future__ import annotations
 
@@ -64,16 +64,16 @@ USUAL = frozenset(
         "zlib",
     ]
 )
-"""Modules of the standard library that execute nothing of what they are given."""
+"""Modules of the standard library that do not execute their input."""
 
 
 @attrs.frozen
 class Unusual:
-    """A module that could do harm, or is of one system only.
+    """A module that could be unsafe, or that exists on one platform only.
 
     Attributes:
-        reason: Why that is no harm here.
-        users: The files that may import it.
+        reason: Reason for its use.
+        users: Files that may import it.
     """
 
     reason: str
@@ -82,7 +82,7 @@ class Unusual:
 
 UNUSUAL: Mapping[str, Unusual] = {
     "concurrent.futures.process": Unusual(
-        "the name of an error of broken pools",
+        "provides the exception for broken pools",
         {
             "plugins/executors/evoframe_executors/processes.py",
             "src/evoframe/study/pool.py",
@@ -90,12 +90,14 @@ UNUSUAL: Mapping[str, Unusual] = {
         },
     ),
     "configparser": Unusual(
-        "neat-python reads its options so; the text is made from a frozen class",
+        "neat-python reads its options with it; the text is generated from a frozen class",
         {"plugins/evolvers/evoframe_evolvers/cppn/genomes.py"},
     ),
-    "fcntl": Unusual("asks Linux for a signal when a parent ends", {"src/evoframe/workers/processes.py"}),
+    "fcntl": Unusual(
+        "requests a signal from Linux when the parent process ends", {"src/evoframe/workers/processes.py"}
+    ),
     "importlib": Unusual(
-        "loads rooms and commands of our own on demand, and plugins that a person installed or named",
+        "loads evoframe's own modules on demand, and plugins that the user installed or named",
         {
             "src/evoframe/cli/program.py",
             "src/evoframe/record/run.py",
@@ -103,15 +105,15 @@ UNUSUAL: Mapping[str, Unusual] = {
         },
     ),
     "multiprocessing": Unusual(
-        "pickles what passes between processes of one program; nothing from a file or a network",
+        "pickles objects between processes of one program, never from a file or a network",
         {"src/evoframe/study/pool.py", "src/evoframe/workers/processes.py"},
     ),
     "multiprocessing.reduction": Unusual(
-        "makes the parcels between a run and its own workers, as multiprocessing makes its own",
+        "pickles the messages between a run and its workers, as multiprocessing does",
         {"plugins/executors/evoframe_executors/worker.py"},
     ),
     "pebble": Unusual(
-        "pools of processes that can be ended; pickles as multiprocessing does",
+        "provides pools of processes that can be stopped; pickles as multiprocessing does",
         {
             "plugins/executors/evoframe_executors/processes.py",
             "src/evoframe/study/pool.py",
@@ -119,11 +121,11 @@ UNUSUAL: Mapping[str, Unusual] = {
         },
     ),
     "sqlite3": Unusual(
-        "a database is opened for reading without trust in its schema, and without attaching others",
+        "opens databases for reading with an untrusted schema, and attaches no others",
         {"src/evoframe/record/database.py", "src/evoframe/record/store.py"},
     ),
     "tempfile": Unusual(
-        "folders of files that are read by name only: neat-python's options, and unfinished reports",
+        "creates directories of files that are read by name only: neat-python's options, unfinished reports",
         {"plugins/evolvers/evoframe_evolvers/cppn/genomes.py", "src/evoframe/analysis/output/writing.py"},
     ),
 }
@@ -134,7 +136,7 @@ NAMES_OF_MODULES = {
     "neat_python": {"neat"},
     "python_slugify": {"slugify"},
 }
-"""Distributions whose modules are called otherwise; cffi makes the bindings, and is not imported."""
+"""Distributions whose modules have other names; cffi builds the bindings and is not imported."""
 
 BARE = frozenset({"eval", "exec", "compile", "__import__"})
 """Functions that execute text."""
@@ -153,15 +155,15 @@ CALLED = frozenset(
         "to_pickle",
     )
 )
-"""Methods that execute something else."""
+"""Methods that execute code or programs."""
 
 EXECUTING = {
-    ("src/evoframe/registry/discovery.py", "exec_module"): "a plugin of a file that a person named with -p"
+    ("src/evoframe/registry/discovery.py", "exec_module"): "loads a plugin file that the user named with -p"
 }
 
 
 def dependencies() -> set[str]:
-    """Return the modules of the distributions that evoframe and its extras depend on."""
+    """Return the modules of the dependencies of evoframe and its extras."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     wanted = [*project["dependencies"], *itertools.chain(*project["optional-dependencies"].values())]
     distributions = {re.split(r"[^A-Za-z0-9_-]", text)[0].replace("-", "_").lower() for text in wanted}
@@ -176,7 +178,7 @@ def shown(path: Path) -> str:
 
 
 def imported(tree: ast.AST) -> Iterator[str]:
-    """Yield the dotted names of what is imported, wherever that stands."""
+    """Yield the dotted names of all imports in a file, including nested ones."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -194,7 +196,7 @@ def rule_of(name: str) -> str | None:
 
 
 def refused_imports(path: str, tree: ast.AST) -> list[str]:
-    """Return what a file imports although it may not."""
+    """Return the forbidden imports of a file."""
     refused = []
     for name in imported(tree):
         rule = rule_of(name)
@@ -204,7 +206,7 @@ def refused_imports(path: str, tree: ast.AST) -> list[str]:
 
 
 def refused_calls(path: str, tree: ast.AST) -> list[str]:
-    """Return the calls of a file that execute what they are given, or could."""
+    """Return the calls in a file that execute, or could execute, their arguments."""
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
     return [ast.unparse(call) for call in calls if _is_refused(path, call)]
 
@@ -225,17 +227,17 @@ def _is_refused(path: str, call: ast.Call) -> bool:
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=shown)
-def test_only_what_is_listed_is_imported(path: Path) -> None:
+def test_only_listed_modules_are_imported(path: Path) -> None:
     assert refused_imports(shown(path), ast.parse(path.read_text(encoding="utf-8"))) == []
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=shown)
-def test_nothing_that_is_read_is_executed(path: Path) -> None:
+def test_no_input_is_executed(path: Path) -> None:
     assert refused_calls(shown(path), ast.parse(path.read_text(encoding="utf-8"))) == []
 
 
 @pytest.mark.parametrize("name", UNUSUAL)
-def test_unusual_modules_are_imported_where_their_list_says(name: str) -> None:
+def test_unusual_modules_are_imported_only_by_their_listed_users(name: str) -> None:
     users = {shown(path) for path in SOURCES if name in map(rule_of, imported(ast.parse(path.read_text())))}
     assert users == UNUSUAL[name].users
 
@@ -286,5 +288,5 @@ def test_a_call_that_executes_is_refused(text: str) -> None:
 @pytest.mark.parametrize(
     "text", ["re.compile(text)", "numpy.load(path, allow_pickle=False)", "json.loads(text)"]
 )
-def test_a_call_that_does_not_is_none_of_these(text: str) -> None:
+def test_a_call_that_does_not_execute_is_accepted(text: str) -> None:
     assert not refused_calls("src/evoframe/anywhere.py", ast.parse(text))

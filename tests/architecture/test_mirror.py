@@ -1,4 +1,4 @@
-"""Tests stand where the module that they are about stands, under its name."""
+"""Tests of the layout of the test suite: each module has a test file at the corresponding path."""
 
 from __future__ import annotations
 
@@ -18,36 +18,36 @@ ELSEWHERE: Mapping[str, str] = {
     },
     "src/evoframe/testing/strategies.py": "tests/testing/test_strategy_contract.py",
 }
-"""Modules whose tests have another name: the contracts are tests, and are tested by breaking them."""
+"""Modules whose tests have another name: the contracts are tests, tested by violating them."""
 
 UNTESTED: Mapping[str, str] = {
-    "src/evoframe/analysis/api.py": "passes calls on; tests of studies and of reports come through it",
-    "src/evoframe/__main__.py": "starts the program: all tests of the command line come through it",
-    "src/evoframe/_version.py": "a number",
-    "src/evoframe/testing/laws.py": "what contracts share; the tests of all contracts go through it",
+    "src/evoframe/analysis/api.py": "forwards calls; covered by tests of studies and reports",
+    "src/evoframe/__main__.py": "starts the program; covered by tests of the command line",
+    "src/evoframe/_version.py": "contains only a number",
+    "src/evoframe/testing/laws.py": "shared by contracts; covered by tests of all contracts",
 }
-"""Modules without tests of their own, and why."""
+"""Modules without their own tests -> reason."""
 
 FOLDERS: Mapping[str, str] = {
-    "architecture": "laws about the source as a whole",
+    "architecture": "checks of the source as a whole",
     "benchmarks": "the programs in benchmarks/",
-    "browser": "pages of reports, in Chromium",
+    "browser": "pages of reports in Chromium",
     "data": "files that tests read",
-    "experiment": "the paper's experiment against its documents",
-    "fuzz": "inputs that nobody would write",
+    "experiment": "the paper's experiment, compared with its documents",
+    "fuzz": "generated inputs",
     "libcppn": "the C library and its binding",
     "libvox": "the C library and its binding",
-    "plugins": "a folder for each in plugins/",
-    "support": "what several tests use",
-    "survival": "kills and damage, through all rooms",
+    "plugins": "a folder for each plugin in plugins/",
+    "support": "modules shared by tests",
+    "survival": "kills and damage, across all packages",
     "texts": "texts that people read, in one snapshot",
-    "third_party": "distributions of other people",
+    "third_party": "distributions of third parties",
 }
-"""Folders of tests that mirror no room, and what is in them."""
+"""Folders of tests that do not mirror a package -> contents."""
 
 
 def has_tests_to_find(path: Path) -> bool:
-    """Return whether a module says anything itself: a front only passes names on."""
+    """Return whether a module has code to test; most ``__init__`` modules only re-export names."""
     if path.name != "__init__.py":
         return True
     return any(isinstance(node, ast.ClassDef) for node in ast.parse(path.read_text()).body)
@@ -64,7 +64,7 @@ def mirrored() -> Iterator[tuple[Path, Path]]:
 
 
 def filled(folder: Path) -> Iterator[str]:
-    """Yield the names of folders with files in them: what Python compiled may outlive its source."""
+    """Yield the names of folders that contain files other than compiled ones."""
     for path in folder.iterdir():
         if path.is_dir() and any(
             each.is_file() and "__pycache__" not in each.parts for each in path.rglob("*")
@@ -76,25 +76,25 @@ MIRRORED = {str(path.relative_to(ROOT)): tests for path, tests in mirrored()}
 
 
 @pytest.mark.parametrize("module", MIRRORED)
-def test_every_module_has_its_tests(module: str) -> None:
+def test_every_module_has_tests(module: str) -> None:
     tests = ROOT / ELSEWHERE[module] if module in ELSEWHERE else MIRRORED[module]
     assert tests.is_file() or module in UNTESTED, f"{module} needs {tests.relative_to(ROOT)}"
 
 
 @pytest.mark.parametrize("module", [*ELSEWHERE, *UNTESTED])
-def test_exceptions_are_of_modules_that_need_them(module: str) -> None:
+def test_exceptions_are_still_required(module: str) -> None:
     assert module in MIRRORED
     assert not MIRRORED[module].exists()
 
 
-def test_every_folder_of_tests_mirrors_a_room_or_says_what_it_is_for() -> None:
+def test_every_folder_of_tests_mirrors_a_package_or_is_listed() -> None:
     rooms = {path.parent.name for path in CORE.glob("*/__init__.py")}
     folders = set(filled(TESTS))
     assert folders - rooms == FOLDERS.keys()
 
 
 @pytest.mark.parametrize("package", [CORE, *PLUGIN_PACKAGES], ids=lambda package: package.name)
-def test_no_folder_of_tests_mirrors_a_package_that_is_not_there(package: Path) -> None:
+def test_no_folder_of_tests_mirrors_a_missing_package(package: Path) -> None:
     folder = TESTS if package == CORE else TESTS / "plugins" / package.parent.name
     others = FOLDERS if package == CORE else ()
     for path in folder.rglob("test_*.py"):

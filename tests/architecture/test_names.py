@@ -1,4 +1,4 @@
-"""Names that do not shadow: ``import evoframe.x`` and ``evoframe.x`` never mean two things."""
+"""Tests for shadowed names: ``import evoframe.x`` and ``evoframe.x`` always mean the same object."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ INITS = [path for package in (CORE, *PLUGIN_PACKAGES) for path in sorted(package
 
 
 def submodules(package: Path) -> set[str]:
-    """Return the names of modules and packages directly within a package."""
+    """Return the names of the modules and packages directly in a package."""
     inner = {path.parent.name for path in package.glob("*/__init__.py")}
     return inner | {path.stem for path in package.glob("*.py")} - {"__init__"}
 
 
 def bound(init: Path) -> dict[str, str]:
-    """Return the names that an ``__init__`` gives to its package, and where each is from."""
+    """Return the names that an ``__init__`` defines, and the origin of each."""
     found: dict[str, str] = {}
     for node in ast.parse(init.read_text()).body:
         if isinstance(node, ast.ImportFrom):
@@ -34,22 +34,22 @@ def bound(init: Path) -> dict[str, str]:
     return found
 
 
-def test_no_module_has_the_name_of_something_public() -> None:
+def test_no_module_has_a_public_name() -> None:
     assert submodules(CORE) & set(evoframe.__all__) == set()
 
 
 @pytest.mark.parametrize("init", INITS, ids=lambda path: str(path.parent.relative_to(ROOT)))
-def test_no_package_gives_the_name_of_a_module_to_something_else(init: Path) -> None:
+def test_no_package_shadows_its_own_modules(init: Path) -> None:
     names = bound(init)
     shadowed = {name: names[name] for name in submodules(init.parent) & names.keys()}
     itself = {
         name: origin for name, origin in shadowed.items() if origin.endswith(f"{init.parent.name}.{name}")
     }
-    assert shadowed == itself  # a package may import its own module
+    assert shadowed == itself  # a package may import its own modules
 
 
-def test_names_that_shadow_are_found(tmp_path: Path) -> None:
-    """Or the law above would hold of everything."""
+def test_shadowed_names_are_found(tmp_path: Path) -> None:
+    """The check above can fail."""
     for name in ("run", "tools"):
         (tmp_path / f"{name}.py").write_text("")
     (tmp_path / "__init__.py").write_text("from here.run import run\nfrom here import tools\n")

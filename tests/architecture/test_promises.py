@@ -1,4 +1,4 @@
-"""What others stand on: scripts of strangers that use evoframe's parts without its commands go on working."""
+"""Tests of stability: scripts that use components without the command line continue to work."""
 
 from __future__ import annotations
 
@@ -21,9 +21,7 @@ def design() -> evoframe.Design:
     return evoframe.Design({"morphology": cells, "controller": np.zeros(cells.shape)})
 
 
-def test_designs_are_simulated_and_scored_as_a_configuration_says(
-    config: evoframe.RunConfig, design: evoframe.Design
-) -> None:
+def test_designs_are_simulated_and_scored(config: evoframe.RunConfig, design: evoframe.Design) -> None:
     simulator, objective = config.simulator.component, config.objective.component
     phases = np.linspace(0.0, 1.0, 24).reshape(6, 2, 2)
     outcomes = simulator.simulate([design, design.with_role("controller", phases)], objective.record)
@@ -32,9 +30,7 @@ def test_designs_are_simulated_and_scored_as_a_configuration_says(
     assert scores[0] != scores[1]
 
 
-def test_a_simulator_records_what_a_stranger_asks_for(
-    config: evoframe.RunConfig, design: evoframe.Design
-) -> None:
+def test_a_simulator_accepts_a_record(config: evoframe.RunConfig, design: evoframe.Design) -> None:
     simulator = config.simulator.component
     [outcome] = simulator.simulate([design], evoframe.Record(tracks=simulator.tracks, every=0.01))
     assert isinstance(outcome, evoframe.Outcome)
@@ -44,13 +40,13 @@ def test_a_simulator_records_what_a_stranger_asks_for(
     )
 
 
-def test_objectives_say_what_to_record(config: evoframe.RunConfig) -> None:
+def test_an_objective_has_a_record(config: evoframe.RunConfig) -> None:
     record = config.objective.component.record
     assert isinstance(record, evoframe.Record)
-    config.simulator.component.check(record)  # or it would raise
+    config.simulator.component.check(record)  # does not raise
 
 
-def test_populations_decode_designs_one_after_the_other(config: evoframe.RunConfig) -> None:
+def test_populations_decode_designs_in_sequence(config: evoframe.RunConfig) -> None:
     with evoframe.assemble(config) as coevolution:
         for population in coevolution.populations:
             population.reproduce()
@@ -62,7 +58,7 @@ def test_populations_decode_designs_one_after_the_other(config: evoframe.RunConf
         assert isinstance(outcome, evoframe.Outcome)
 
 
-def test_a_loop_is_stepped_by_hand(config: evoframe.RunConfig) -> None:
+def test_a_loop_can_be_iterated_manually(config: evoframe.RunConfig) -> None:
     with evoframe.assemble(config) as coevolution:
         turn = next(iter(coevolution))
     assert (turn.index, {report.population for report in turn.reports}) == (0, set(config.populations))

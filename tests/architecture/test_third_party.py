@@ -1,4 +1,4 @@
-"""Distributions of other people, really installed by pip into a temporary place."""
+"""Tests of third-party distributions, installed by pip into a temporary directory."""
 
 from __future__ import annotations
 
@@ -44,14 +44,12 @@ def test_an_aggregator_is_selected_by_name(evoframe: Evoframe, tmp_path: Path) -
     assert "aggregator = \"'median' of acme-median 2.1\"" in config
 
 
-def test_one_that_fails_to_import_is_skipped_with_a_warning_and_the_run_goes_on(evoframe: Evoframe) -> None:
+def test_a_plugin_that_fails_to_import_is_skipped_with_a_warning(evoframe: Evoframe) -> None:
     finished = evoframe("run", "quick", "--set", "run.generations=0", "--out", "there")
     assert finished.returncode == 0
     [warning] = [line for line in finished.stderr.splitlines() if "acme-broken" in line]
-    assert warning == (
-        "Warning: plugin 'broken' of acme-broken 0.3 is skipped: "
-        "ModuleNotFoundError: No module named 'a_module_that_nobody_has'"
-    )
+    parts = ("Warning", "'broken' of acme-broken 0.3", "ModuleNotFoundError", "'a_module_that_nobody_has'")
+    assert all(part in warning for part in parts)
 
 
 def test_the_list_of_plugins_shows_both(evoframe: Evoframe) -> None:
@@ -61,11 +59,11 @@ def test_the_list_of_plugins_shows_both(evoframe: Evoframe) -> None:
     assert "acme-broken 0.3" in evoframe("plugins", "list").stdout
 
 
-def test_asking_for_what_was_skipped_names_the_cause(evoframe: Evoframe) -> None:
+def test_an_unknown_name_is_answered_with_skipped_plugins(evoframe: Evoframe) -> None:
     finished = evoframe("config", "show", "--set", "aggregator=trimmed")
     assert finished.returncode == 2
-    assert "unknown aggregator 'trimmed'" in finished.stderr
-    assert "acme-broken 0.3: ModuleNotFoundError" in finished.stderr
+    parts = ("aggregator", "'trimmed'", "acme-broken 0.3", "ModuleNotFoundError")
+    assert all(part in finished.stderr for part in parts)
 
 
 def test_the_environment_blocks_and_requires_distributions(evoframe: Evoframe) -> None:
@@ -73,17 +71,18 @@ def test_the_environment_blocks_and_requires_distributions(evoframe: Evoframe) -
         "config", "show", "--set", "aggregator=median", EVOFRAME_PLUGINS_BLOCK="acme-median,acme-broken"
     )
     assert blocked.returncode == 2
-    assert "unknown aggregator 'median'" in blocked.stderr
+    assert "'median'" in blocked.stderr
     assert "acme-broken" not in blocked.stderr
     required = evoframe("plugins", "list", EVOFRAME_PLUGINS_REQUIRE="acme-broken")
     assert required.returncode == 2
-    assert "required plugin 'acme-broken' cannot be used: ModuleNotFoundError" in required.stderr
+    assert all(part in required.stderr for part in ("'acme-broken'", "ModuleNotFoundError"))
 
 
 def test_the_configuration_blocks_and_requires_distributions(evoframe: Evoframe) -> None:
     blocked = evoframe(
         "config", "show", "--set", "aggregator=median", "--set", 'plugins.block=["acme-median"]'
     )
-    assert (blocked.returncode, "unknown aggregator 'median'" in blocked.stderr) == (2, True)
+    assert (blocked.returncode, "'median'" in blocked.stderr) == (2, True)
     required = evoframe("config", "show", "--set", 'plugins.require=["acme-nothing"]')
-    assert (required.returncode, "'acme-nothing' is not installed" in required.stderr) == (2, True)
+    assert (required.returncode, "'acme-nothing'" in required.stderr) == (2, True)
+    assert "plugins.require" in required.stderr

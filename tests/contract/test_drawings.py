@@ -1,4 +1,4 @@
-"""What is drawn: values that nobody changes, and that are compared where that has a meaning."""
+"""Tests of drawable values: they are frozen, and graphs are compared by value."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ def part() -> GeometryPart:
     return GeometryPart("contractile", "#cc3311", 1.0, square, np.array([[0, 1, 2, 3]]))
 
 
-def test_graphs_are_equal_where_all_their_parts_are() -> None:
+def test_graphs_are_equal_if_all_their_parts_are() -> None:
     assert graph(0.5) == graph(0.5)
     assert graph(0.5) != graph(0.25)
 
 
-def test_a_geometry_is_compared_by_who_it_is() -> None:
-    """Its arrays have no one truth value; ``==`` must not raise that."""
+def test_geometries_are_compared_by_identity() -> None:
+    """Comparing their arrays has no single truth value; ``==`` must not raise."""
     first, second = (Geometry(np.zeros(1), (part(),), {}) for _ in range(2))
-    assert (first == first, first == second) == (True, False)  # noqa: PLR0124 - that is the question
+    assert (first == first, first == second) == (True, False)  # noqa: PLR0124 - tests identity
 
 
 @pytest.mark.parametrize(
@@ -38,6 +38,6 @@ def test_a_geometry_is_compared_by_who_it_is() -> None:
         (NetworkLink(0, 1, 1.0), "end"),
     ],
 )
-def test_nothing_that_is_drawn_can_be_changed(value: object, field: str) -> None:
+def test_drawable_values_cannot_be_changed(value: object, field: str) -> None:
     with pytest.raises(attrs.exceptions.FrozenInstanceError):
         setattr(value, field, None)

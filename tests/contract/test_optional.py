@@ -1,4 +1,4 @@
-"""Optional capabilities: a component offers one by having its members, all of them."""
+"""Tests of optional capabilities: a component has one if it has all its members."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def members_of(protocol: type[Any]) -> set[str]:
 
 
 def having(members: set[str]) -> object:
-    """Return something that has these members, and no others."""
+    """Return an object with exactly these *members*."""
     return type("Component", (), dict.fromkeys(members, 1))()
 
 
@@ -81,13 +81,13 @@ def test_a_capability_is_documented_and_public(name: str) -> None:
     ],
     ids=lambda value: type(value).__name__,
 )
-def test_each_capability_is_offered_on_its_own(component: Any, capabilities: set[Any]) -> None:
+def test_capabilities_are_independent(component: Any, capabilities: set[Any]) -> None:
     offered = {each for each in CAPABILITIES.values() if isinstance(component, each)}
     assert offered == capabilities
 
 
-def test_a_capability_of_one_kind_of_component_is_not_that_of_another() -> None:
-    """A method called ``geometry`` makes no simulator."""
+def test_a_capability_requires_the_protocol_of_its_kind() -> None:
+    """A method called ``geometry`` alone does not make a simulator."""
     assert not isinstance(having({"geometry"}), SupportsGeometry)
     assert isinstance(having({"provenance"}), SupportsProvenance)
 
@@ -97,8 +97,8 @@ def test_an_objective_may_have_a_unit() -> None:
     assert (unit_of(toys.Late()), unit_of(toys.Value())) == ("m", "")
 
 
-def test_variants_are_compared_by_who_they_are() -> None:
-    """Their designs are arrays, which have no one truth value."""
+def test_variants_are_compared_by_identity() -> None:
+    """Comparing arrays of their designs has no single truth value."""
     design = evoframe.Design({"a": np.ones(2)})
     first, second = (Variant("a", toys.Product(), design, toys.Value.record) for _ in range(2))
     assert first != second

@@ -1,4 +1,4 @@
-"""The protocols: who keeps them is recognised, and who does not is not."""
+"""Tests of the protocols: only components with all members are recognized."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def members_of(protocol: type[Any]) -> set[str]:
     return {name for name in vars(protocol) if not name.startswith("_")}
 
 
-def test_there_is_an_example_of_each() -> None:
+def test_each_protocol_has_an_example() -> None:
     assert {*COMPONENTS, "Network"} == set(protocols.__all__)
 
 
 @pytest.mark.parametrize("name", COMPONENTS)
-def test_who_has_all_members_keeps_a_protocol_and_nobody_else(name: str) -> None:
+def test_a_protocol_requires_all_its_members(name: str) -> None:
     protocol = getattr(protocols, name)
     assert isinstance(COMPONENTS[name], protocol)
     for missing in members_of(protocol):
@@ -43,14 +43,14 @@ def test_who_has_all_members_keeps_a_protocol_and_nobody_else(name: str) -> None
 
 
 @pytest.mark.parametrize("name", COMPONENTS)
-def test_a_protocol_says_what_each_member_is_for_and_is_public(name: str) -> None:
+def test_a_protocol_is_public_and_documents_each_member(name: str) -> None:
     protocol = getattr(evoframe, name)
     assert protocol is getattr(protocols, name)
     for member in members_of(protocol):
         assert inspect.getdoc(vars(protocol)[member]), member
 
 
-def test_kinds_of_components_are_told_apart() -> None:
+def test_kinds_of_components_are_distinguished() -> None:
     kinds = {"Aggregator", "CollaborationStrategy", "Encoder", "Evolver", "Objective", "Simulator"}
     for kind in kinds:
         kept = {other for other in kinds if isinstance(COMPONENTS[kind], getattr(protocols, other))}

@@ -1,4 +1,4 @@
-"""Values that travel: nobody changes them on the way."""
+"""Tests of exchanged values: they cannot be changed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from evoframe.contract import values
 numbers = arrays(st.sampled_from(["uint8", "float64"]), array_shapes(max_dims=3, max_side=3))
 
 
-def test_a_design_cannot_be_changed_behind_the_cache() -> None:
+def test_a_design_in_a_cache_cannot_be_changed() -> None:
     array = np.array([1.0])
     given_design = Design({"a": array})
     array[0] = 2.0
@@ -27,7 +27,7 @@ def test_a_design_cannot_be_changed_behind_the_cache() -> None:
 
 
 @given(st.dictionaries(st.sampled_from("abc"), numbers), st.sampled_from("abcd"), numbers)
-def test_a_design_with_another_role_has_that_and_all_others(
+def test_adding_a_role_keeps_all_others(
     roles: dict[str, NDArray[Any]], role: str, array: NDArray[Any]
 ) -> None:
     design = Design(roles)
@@ -39,25 +39,25 @@ def test_a_design_with_another_role_has_that_and_all_others(
     assert design.roles.keys() == roles.keys()
 
 
-def test_what_nobody_can_write_to_is_not_copied() -> None:
+def test_a_read_only_array_is_not_copied() -> None:
     design = Design({"a": np.ones(3)})
     assert design.with_role("b", np.zeros(1)).roles["a"] is design.roles["a"]
 
 
 def test_a_list_of_numbers_is_an_array() -> None:
-    roles: Any = {"a": [1.0, 2.0]}  # as a script may well give it
+    roles: Any = {"a": [1.0, 2.0]}  # as scripts may pass it
     assert Design(roles).roles["a"].tolist() == [1.0, 2.0]
 
 
-def test_designs_and_outcomes_are_compared_by_who_they_are() -> None:
-    """Arrays have no one truth value; ``==`` must not raise that."""
+def test_designs_and_outcomes_are_compared_by_identity() -> None:
+    """Comparing arrays has no single truth value; ``==`` must not raise."""
     first, second = (Design({"a": np.ones(2)}) for _ in range(2))
     assert first != second
     outcomes = [Outcome(np.zeros(2, np.int64), np.zeros(2), {}) for _ in range(2)]
     assert outcomes[0] != outcomes[1]
 
 
-def test_turns_are_equal_however_long_they_took() -> None:
+def test_turns_are_compared_without_their_workload() -> None:
     turn = Turn(1, (), (Pair((1, 2), 0.5),), None, Workload(1, 1, 0.25))
     assert attrs.evolve(turn, workload=Workload(1, 0, 9.0)) == turn
     assert attrs.evolve(turn, pairs=(Pair((1, 2), 0.25),)) != turn
@@ -68,7 +68,7 @@ def test_values_cannot_be_changed(name: str) -> None:
     assert attrs.inspect(getattr(values, name)).is_frozen
 
 
-def test_what_is_not_said_is_the_common_case() -> None:
+def test_defaults_of_values() -> None:
     assert Record(("a",)) == Record(("a",), every=0.0, samples=None, initial=False, until=0.0)
     assert Member(1, None) == Member(1, None, None, 0, 0, diverged=False)
     assert (Score(0.5).diverged_at, Pair((1,), 0.5).diverged_at) == (None, None)

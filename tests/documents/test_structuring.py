@@ -1,4 +1,4 @@
-"""Where a fault is, in tables within tables."""
+"""Tests of structuring: the place of each fault, in nested tables, and its message."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from evoframe.documents.structuring import StructureError, structure, unstructure
+from evoframe.documents.structuring import StructureError, option_names, structure, unstructure
 
 
 @attrs.frozen
@@ -34,7 +34,7 @@ class Cart:
         ({"front": {"radius": "a"}, "others": [{}]}, ["cart.front.radius", "cart.others[0].radius"]),
     ],
 )
-def test_a_fault_has_its_place(table: Any, places: list[str]) -> None:
+def test_a_fault_has_the_path_of_its_value(table: Any, places: list[str]) -> None:
     with pytest.raises(StructureError) as refused:
         structure(table, Cart, ("cart",))
     assert [".".join(fault.path) for fault in refused.value.faults] == places
@@ -45,7 +45,7 @@ carts = st.builds(Cart, front=wheels, others=st.lists(wheels, max_size=3).map(tu
 
 
 @given(carts)
-def test_what_was_written_as_tables_is_structured_to_the_same(cart: Cart) -> None:
+def test_unstructured_values_are_structured_to_the_same(cart: Cart) -> None:
     assert structure(unstructure(cart), Cart, ("cart",)) == cart
 
 
@@ -59,30 +59,68 @@ class Load:
 
 
 @pytest.mark.parametrize(
-    ("table", "message"),
+    ("table", "path", "parts"),
     [
-        ({}, "load.name: is missing"),
-        ({"name": 3}, "load.name: expected a string, found 3"),
-        ({"name": "a", "heavy": 1}, "load.heavy: expected true or false, found 1"),
-        ({"name": "a", "sort": "cole"}, 'load.sort: expected one of "grain", "coal", found "cole"'),
-        ({"name": "a", "sizes": [1]}, "load.sizes: expected a list of 2, found [1]"),
-        ({"name": "a", "sizes": [1, True]}, "load.sizes[1]: expected a whole number, found true"),
-        ({"name": "a", "weight": 0}, "load.weight: must be > 0, found 0.0"),
-        ({"name": "a", "weight": float("nan")}, "load.weight: expected a finite number, found nan"),
-        (
-            {"name": "a", "wieght": 2},
-            "load.wieght: unknown option; did you mean 'weight'? options: name, sort",
-        ),
-        (3, "load: expected a table, found 3"),
+        ({}, "load.name", ["missing"]),
+        ({"name": 3}, "load.name", ["a string", "found 3"]),
+        ({"name": "a", "heavy": 1}, "load.heavy", ["true", "false", "found 1"]),
+        ({"name": "a", "sort": "cole"}, "load.sort", ['"grain", "coal"', 'found "cole"']),
+        ({"name": "a", "sizes": [1]}, "load.sizes", ["list of 2", "found [1]"]),
+        ({"name": "a", "sizes": [1, True]}, "load.sizes[1]", ["whole number", "found true"]),
+        ({"name": "a", "weight": 0}, "load.weight", ["> 0", "found 0.0"]),
+        ({"name": "a", "weight": float("nan")}, "load.weight", ["finite number", "found nan"]),
+        ({"name": "a", "wieght": 2}, "load.wieght", ["unknown option", "'weight'", "name, sort"]),
+        (3, "load", ["a table", "found 3"]),
     ],
 )
-def test_a_fault_says_what_was_found_and_what_was_expected(table: Any, message: str) -> None:
+def test_a_fault_has_the_value_found_and_the_value_expected(table: Any, path: str, parts: list[str]) -> None:
     with pytest.raises(StructureError) as refused:
         structure(table, Load, ("load",))
-    assert str(refused.value).startswith(message)
+    [fault] = refused.value.faults
+    assert ".".join(fault.path) == path
+    assert all(part in fault.message for part in parts)
+    assert str(refused.value) == f"{path}: {fault.message}"
 
 
-def test_numbers_of_numpy_are_numbers_and_none_is_left_out() -> None:
+def test_only_an_unknown_option_lists_the_valid_ones() -> None:
+    with pytest.raises(StructureError) as refused:
+        structure({"name": 3, "wieght": 2}, Load, ("load",))
+    assert [(fault.path[-1], fault.options) for fault in refused.value.faults] == [
+        ("name", None),
+        ("wieght", ("name", "sort", "heavy", "sizes", "weight")),
+    ]
+
+
+@attrs.frozen
+class Train:
+    load: Load
+    cart: Cart
+    length: int = attrs.field(init=False, default=1)
+
+
+@attrs.frozen
+class Unresolvable:
+    load: Unknown  # type: ignore[name-defined]  # noqa: F821
+    size: int
+
+
+def test_options_of_nested_classes_have_dotted_names() -> None:
+    loads = ["name", "sort", "heavy", "sizes", "weight"]
+    nested = [f"load.{name}" for name in loads]
+    expected = [
+        "load",
+        *nested,
+        "cart",
+        "cart.front",
+        "cart.front.radius",
+        "cart.front.spokes",
+        "cart.others",
+    ]
+    assert list(option_names(Train)) == expected
+    assert list(option_names(Unresolvable)) == ["load", "size"]
+
+
+def test_numpy_numbers_are_accepted_and_none_is_left_out() -> None:
     load = structure({"name": "a", "sizes": np.array([1, 2]), "weight": np.float32(2.5)}, Load, ("load",))
     assert load == Load("a", sizes=(1, 2), weight=2.5)
     assert unstructure(Load("a")) == {"name": "a", "sort": "grain", "heavy": False, "weight": 1.0}

@@ -1,4 +1,4 @@
-"""Trees of tables: their leaves, and how two of them differ."""
+"""Tests of trees of tables: their leaves, and the differences of two trees."""
 
 from __future__ import annotations
 
@@ -19,17 +19,13 @@ tables = st.dictionaries(st.text("abc", min_size=1, max_size=2), trees, max_size
 
 
 @given(tables, tables)
-def test_trees_differ_where_and_only_where_they_are_not_equal(
-    first: dict[str, object], second: dict[str, object]
-) -> None:
+def test_only_unequal_trees_differ(first: dict[str, object], second: dict[str, object]) -> None:
     assert differences(first, first) == []
     assert bool(differences(first, second)) == (first != second)
 
 
 @given(tables, tables)
-def test_differences_seen_from_the_other_side_are_the_same(
-    first: dict[str, object], second: dict[str, object]
-) -> None:
+def test_swapping_the_trees_gives_the_same_keys(first: dict[str, object], second: dict[str, object]) -> None:
     there, back = differences(first, second), differences(second, first)
     assert {line.partition(": ")[0] for line in there} == {line.partition(": ")[0] for line in back}
 
@@ -61,7 +57,7 @@ def test_a_difference_is_named_by_its_key(now: dict[str, Any], lines: list[str])
     assert differences({"run": {"seed": 1}, "weights": [1, 2]}, now) == lines
 
 
-def test_differences_have_the_words_that_are_asked_for() -> None:
+def test_differences_name_the_trees_with_the_given_words() -> None:
     assert differences({"a": 1}, {"a": 2}, ("there", "here")) == ["a: 1 there, 2 here"]
 
 
@@ -78,12 +74,12 @@ def grown(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 
 
 @given(tables)
-def test_a_tree_is_what_its_leaves_say(tree: dict[str, Any]) -> None:
+def test_a_tree_can_be_rebuilt_from_its_leaves(tree: dict[str, Any]) -> None:
     assert grown(leaves(tree)) == tree
 
 
 @given(tables)
-def test_what_was_read_is_as_it_is_read(tree: dict[str, Any]) -> None:
+def test_tables_that_were_read_do_not_change(tree: dict[str, Any]) -> None:
     assert as_read(tree) == tree
 
 

@@ -1,4 +1,4 @@
-"""A configuration becomes a loop: every component where it belongs, each with its own stream."""
+"""Tests of the assembly of a loop: its components and their random streams."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_components_are_those_of_the_configuration(toy_config: Load) -> None:
     assert (coevolution.generations, coevolution.turn) == (4, -1)
 
 
-def test_populations_keep_their_order_and_their_size(toy_config: Load) -> None:
+def test_populations_keep_their_order_and_size(toy_config: Load) -> None:
     coevolution = assemble(toy_config())
     assert [population.name for population in coevolution.populations] == ["a", "b"]
     for population, chosen in zip(coevolution.populations, toy_config().populations.values(), strict=True):
@@ -35,7 +35,7 @@ def test_populations_keep_their_order_and_their_size(toy_config: Load) -> None:
         assert population.encoder == chosen.encoder.component
 
 
-def test_an_evolver_starts_with_what_its_encoder_needs(
+def test_an_evolver_starts_with_the_inputs_and_outputs_of_its_encoder(
     toy_config: Load, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[tuple[int, int, int]] = []
@@ -54,7 +54,7 @@ def test_an_evolver_starts_with_what_its_encoder_needs(
     assert started == [(4, 2, 6), (4, 2, 5)]
 
 
-def test_each_population_evolves_and_chooses_with_streams_of_its_name(toy_config: Load) -> None:
+def test_each_population_has_its_own_random_streams(toy_config: Load) -> None:
     for population in assemble(toy_config("run.seed=8")).populations:
         evolver = population.evolver
         assert isinstance(evolver, toys.DriftRun)
@@ -63,7 +63,7 @@ def test_each_population_evolves_and_chooses_with_streams_of_its_name(toy_config
             assert used.bit_generator.state == expected.bit_generator.state
 
 
-def test_two_loops_of_one_configuration_share_nothing(toy_config: Load) -> None:
+def test_two_loops_of_one_configuration_share_no_state(toy_config: Load) -> None:
     config = toy_config()
     first, second = assemble(config), assemble(config)
     next(iter(first))
@@ -71,7 +71,7 @@ def test_two_loops_of_one_configuration_share_nothing(toy_config: Load) -> None:
     assert second.evaluator.simulations == 0
 
 
-def test_designs_are_scored_by_workers_that_are_ready(toy_config: Load) -> None:
+def test_an_evaluator_starts_and_closes_its_workers(toy_config: Load) -> None:
     before = len(toys.CLOSED)
     evaluator = evaluator_of(toy_config())
     assert isinstance(evaluator, Evaluator)

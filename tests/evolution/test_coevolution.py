@@ -1,4 +1,4 @@
-"""The loop, with toys for everything else."""
+"""Tests of the loop of coevolution, with toy components."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import toys
 from loops import continued, history, stopped
 
 from evoframe import Design, PopulationReport, Record, RunConfig, RunError, Turn, assemble
+from evoframe.errors import ComponentError
 
 Load = Callable[..., RunConfig]
 T = TypeVar("T")
@@ -30,7 +31,7 @@ def assert_fitness_is_the_mean(turn: Turn, report: PopulationReport, column: int
         assert member.fitness == pytest.approx(statistics.fmean(scores), rel=rel)
 
 
-def test_first_everyone_meets_everyone_and_gets_the_arithmetic_mean(toy_config: Load) -> None:
+def test_the_initial_turn_pairs_all_and_averages_arithmetically(toy_config: Load) -> None:
     turn = next(iter(assemble(toy_config())))
     assert turn.index == 0
     assert len(turn.pairs) == 6 * 5
@@ -40,7 +41,7 @@ def test_first_everyone_meets_everyone_and_gets_the_arithmetic_mean(toy_config: 
         assert_fitness_is_the_mean(turn, report, position, rel=1e-14)
 
 
-def test_designs_that_share_their_first_member_are_simulated_side_by_side(toy_config: Load) -> None:
+def test_designs_with_the_same_first_member_are_simulated_in_sequence(toy_config: Load) -> None:
     asked: list[float] = []
 
     class Noting(toys.Product):
@@ -55,14 +56,14 @@ def test_designs_that_share_their_first_member_are_simulated_side_by_side(toy_co
         asked.clear()
 
 
-def test_then_populations_take_turns_in_order(toy_config: Load) -> None:
+def test_populations_take_turns_in_order(toy_config: Load) -> None:
     turns = list(assemble(toy_config()))
     assert [turn.index for turn in turns] == list(range(9))
     assert [turn.reports[0].population for turn in turns[1:]] == ["a", "b"] * 4
     assert [turn.reports[0].generation for turn in turns[1:]] == [1, 1, 2, 2, 3, 3, 4, 4]
 
 
-def test_all_members_meet_the_fittest_of_the_other_population(toy_config: Load) -> None:
+def test_all_members_are_paired_with_the_fittest_of_the_other_population(toy_config: Load) -> None:
     turns = list(assemble(toy_config()))
     others = {report.population: report for report in turns[0].reports}
     for turn in turns[1:]:
@@ -85,13 +86,13 @@ def test_the_other_population_keeps_its_fitness(toy_config: Load) -> None:
     assert coevolution.populations[1].members == before
 
 
-def test_fitness_is_the_aggregate_of_the_scores_of_its_pairs(toy_config: Load) -> None:
+def test_fitness_aggregates_the_scores_of_a_members_pairs(toy_config: Load) -> None:
     for turn in list(assemble(toy_config()))[1:]:
         [report] = turn.reports
         assert_fitness_is_the_mean(turn, report, "ab".index(report.population), rel=1e-14)
 
 
-def test_the_best_pair_is_the_earliest_of_the_best_that_were_simulated(toy_config: Load) -> None:
+def test_the_best_pair_is_the_earliest_with_the_best_score(toy_config: Load) -> None:
     best, found = -math.inf, None
     for turn in assemble(toy_config()):
         top = max(known(pair.score) for pair in turn.pairs)
@@ -127,7 +128,7 @@ def test_equal_pairs_are_simulated_once(toy_config: Load) -> None:
     assert coevolution.evaluator.simulations == len(seen)
 
 
-def test_the_same_seed_gives_the_same_history_and_another_seed_another(toy_config: Load) -> None:
+def test_the_history_depends_on_the_seed(toy_config: Load) -> None:
     once, again = history(assemble(toy_config())), history(assemble(toy_config()))
     assert once == again
     assert history(assemble(toy_config("run.seed=4"))) != once
@@ -163,7 +164,7 @@ class TestMoreThanTwoPopulations:
             teams = {pair.genomes[:column] + pair.genomes[column + 1 :] for pair in turn.pairs}
             assert len(teams) == 2  # not 2 x 2: the i-th collaborator of one with the i-th of the other
 
-    def test_first_everyone_meets_every_member_of_every_other_one(self, turns: list[Turn]) -> None:
+    def test_the_initial_turn_pairs_all_members_of_all_populations(self, turns: list[Turn]) -> None:
         sizes = (6, 5, 4)
         for one, size in enumerate(sizes):
             for other, partners in enumerate(sizes):
@@ -176,18 +177,18 @@ class TestMoreThanTwoPopulations:
                 assert_fitness_is_the_mean(turn, report, "abc".index(report.population), rel=1e-12)
 
 
-class TestClosingMeeting:
-    def test_lets_the_fittest_meet_who_have_not(self, toy_config: Load) -> None:
+class TestFinalTurn:
+    def test_pairs_the_fittest_that_were_not_paired(self, toy_config: Load) -> None:
         coevolution = assemble(toy_config("collaboration={name='toy-last'}"))
         turns = list(coevolution)
-        closing = turns[-1]
-        assert (closing.index, closing.reports) == (9, ())
+        final = turns[-1]
+        assert (final.index, final.reports) == (9, ())
         fittest = tuple(p.members[p.fittest()].id for p in coevolution.populations)
-        assert [pair.genomes for pair in closing.pairs] == [fittest]
+        assert [pair.genomes for pair in final.pairs] == [fittest]
         assert coevolution.finished
-        assert coevolution.fittest_pair() == closing.pairs[0]
+        assert coevolution.fittest_pair() == final.pairs[0]
 
-    def test_is_one_of_the_pairs_among_which_the_best_is(self, toy_config: Load) -> None:
+    def test_can_find_the_best_pair(self, toy_config: Load) -> None:
         better = 0
         for seed in range(20):
             coevolution = assemble(toy_config("collaboration={name='toy-last'}", f"run.seed={seed}"))
@@ -196,12 +197,12 @@ class TestClosingMeeting:
             better += turns[-1].best_pair is not None
         assert better > 0
 
-    def test_does_not_take_place_when_they_have_met(self, toy_config: Load) -> None:
+    def test_is_omitted_if_the_fittest_were_paired(self, toy_config: Load) -> None:
         coevolution = assemble(toy_config())
         assert len(list(coevolution)) == coevolution.length + 1
         assert coevolution.finished
 
-    def test_takes_place_once_after_a_restart_too(self, toy_config: Load) -> None:
+    def test_takes_place_once_after_a_restart(self, toy_config: Load) -> None:
         config = toy_config("collaboration={name='toy-last'}")
         whole = history(assemble(config))
         second = continued(config, stopped(config, assemble(config).length))
@@ -220,14 +221,14 @@ class TestRandomStreams:
         genomes = self.genomes(toy_config("populations.a.size=5"))
         assert genomes["a"] != genomes["b"]
 
-    def test_they_belong_to_names_so_another_population_changes_none(self, toy_config: Load) -> None:
+    def test_an_additional_population_does_not_change_the_streams_of_others(self, toy_config: Load) -> None:
         two = self.genomes(toy_config())
         third = ('populations.c.encoder={name="toy-number", role="c"}', "populations.c.evolver=toy-drift")
         three = self.genomes(toy_config(*third))
         assert {name: three[name] for name in two} == two
         assert three["c"][:5] not in (two["a"][:5], two["b"])
 
-    def test_collaborators_are_drawn_from_the_stream_of_the_population_that_they_judge(
+    def test_collaborators_are_drawn_with_the_stream_of_the_evaluated_population(
         self, toy_config: Load
     ) -> None:
         coevolution = assemble(toy_config("collaboration={name='toy-drawn'}"))
@@ -241,34 +242,40 @@ class TestRandomStreams:
 
 
 class TestBadComponents:
-    """Those of other people; that they are the core's own is another matter."""
+    """Errors name the component that returned an invalid result."""
 
     @pytest.mark.parametrize("chosen", [[0, 0], [0, 99], [-1, 0], [0.0, 1.0], [0, 1, 2], 0])
-    def test_a_strategy_that_chooses_what_is_not_there_is_named(
+    def test_a_strategy_with_an_invalid_choice_is_named(
         self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, chosen: list[Any]
     ) -> None:
         monkeypatch.setattr(toys.First, "select", lambda self, members, rng: chosen)
-        with pytest.raises(RunError, match=r"collaboration: chose .*, not 2 of the 5 members of 'b'"):
+        with pytest.raises(ComponentError, match="2 of the 5 members of 'b'") as caught:
             list(assemble(toy_config()))
+        assert caught.value.component == "collaboration"
+        assert str(chosen) in caught.value.problem
 
     @pytest.mark.parametrize("fitness", ["abc", None, float("nan"), float("inf")])
-    def test_an_aggregator_that_gives_no_number_is_named(
+    def test_an_aggregator_that_does_not_return_a_number_is_named(
         self, toy_config: Load, monkeypatch: pytest.MonkeyPatch, fitness: Any
     ) -> None:
         monkeypatch.setattr(toys.Mean, "aggregate", lambda self, scores: fitness)
-        with pytest.raises(RunError, match="aggregator: gave the fitness"):
+        with pytest.raises(ComponentError, match=f"fitness {fitness!r}") as caught:
             list(assemble(toy_config()))
+        assert caught.value.component == "aggregator"
 
     def test_a_simulator_that_loses_an_outcome_is_named(
         self, toy_config: Load, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.setattr(toys.Product, "simulate", lambda self, designs, record: [])
-        with pytest.raises(RunError, match="simulator: returned 0 outcomes for"):
+        with pytest.raises(ComponentError, match="0 outcomes") as caught:
             list(assemble(toy_config()))
+        assert caught.value.component == "simulator"
 
 
 class TestDivergence:
-    def test_a_diverged_individual_gets_the_lowest_clean_fitness_and_a_mark(self, toy_config: Load) -> None:
+    def test_a_diverged_individual_is_marked_and_gets_the_lowest_clean_fitness(
+        self, toy_config: Load
+    ) -> None:
         marked = 0
         for turn in assemble(toy_config("simulator.limit=0.15", "run.generations=20")):
             for report in turn.reports:
@@ -287,9 +294,7 @@ class TestDivergence:
         assert any(pair.score is None for pair in pairs)
         assert all((pair.score is None) == (pair.diverged_at == 1) for pair in pairs)
 
-    def test_a_diverged_one_is_neither_collaborator_nor_champion_while_a_clean_one_exists(
-        self, toy_config: Load
-    ) -> None:
+    def test_a_diverged_individual_is_not_chosen_if_a_clean_one_exists(self, toy_config: Load) -> None:
         coevolution = assemble(toy_config("simulator.limit=0.15", "run.generations=20"))
         others: dict[str, Any] = {}
         chosen = 0
@@ -307,12 +312,12 @@ class TestDivergence:
                     assert not population.members[population.fittest()].diverged
         assert chosen == 40
 
-    def test_a_run_of_which_nothing_is_clean_says_so(self, toy_config: Load) -> None:
-        with pytest.raises(RunError, match="every simulation of the initial meeting diverged"):
+    def test_a_run_stops_if_all_simulations_of_the_initial_turn_diverge(self, toy_config: Load) -> None:
+        with pytest.raises(RunError, match="diverged"):
             next(iter(assemble(toy_config("simulator.limit=0"))))
 
 
-def test_iterating_again_after_the_end_gives_nothing(toy_config: Load) -> None:
+def test_iterating_after_the_end_yields_nothing(toy_config: Load) -> None:
     coevolution = assemble(toy_config())
     assert len(list(coevolution)) == 9
     assert list(coevolution) == []

@@ -1,4 +1,4 @@
-"""Scores, their cache, and the solver's own failures."""
+"""Tests of the evaluation of designs: scores, their cache, batches and divergence."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ import pytest
 import toys
 from hypothesis import given, strategies as st
 
-from evoframe import Design, Outcome, Record, RunError
+from evoframe import Design, Outcome, Record
+from evoframe.errors import ComponentError
 from evoframe.evolution.evaluation import Evaluator
 from evoframe_executors import Threads
 
@@ -23,7 +24,7 @@ def design(a: float, b: float) -> Design:
 
 @attrs.define
 class Counting:
-    """Counts what it really simulates."""
+    """A simulator that records the designs that it simulates."""
 
     simulated: list[Design] = attrs.field(factory=list)
     lock: Any = attrs.field(factory=threading.Lock)
@@ -38,8 +39,8 @@ class Counting:
 
 
 @attrs.frozen
-class Nameless(toys.Value):
-    """Cannot say what it sees."""
+class Undefined(toys.Value):
+    """An objective that returns NaN."""
 
     def score(self, outcome: Outcome) -> float:
         del outcome
@@ -66,26 +67,26 @@ def test_every_design_gets_its_score_and_none_is_simulated_twice(
     scorer.close()
 
 
-def test_designs_are_made_while_others_are_simulated() -> None:
-    begun = threading.Event()
+def test_designs_are_decoded_while_others_are_simulated() -> None:
+    started = threading.Event()
 
-    class Telling(Counting):
+    class Signaling(Counting):
         def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
-            begun.set()
+            started.set()
             return super().simulate(designs, record)
 
     def made() -> Iterator[Design]:
         yield from (design(a, 1) for a in range(20))
-        assert begun.wait(timeout=10)
+        assert started.wait(timeout=10)
         yield design(20, 1)
 
-    scorer = evaluator(Telling(), workers=2)
+    scorer = evaluator(Signaling(), workers=2)
     assert [score.value for score in scorer.evaluate(made(), 21)] == list(range(21))
     scorer.close()
 
 
 @given(st.integers(0, 40), st.sampled_from([1, 2, 5]))
-def test_batches_keep_the_order_and_get_small_towards_the_end(count: int, workers: int) -> None:
+def test_batches_keep_the_order_and_shrink_towards_the_end(count: int, workers: int) -> None:
     batches = []
 
     class Noting(Counting):
@@ -107,12 +108,13 @@ def test_batches_keep_the_order_and_get_small_towards_the_end(count: int, worker
     assert sizes[-1:] in ([], [1])
 
 
-def test_a_diverged_simulation_has_its_step_and_no_value() -> None:
+def test_a_diverged_simulation_has_a_step_and_no_value() -> None:
     [good, bad] = evaluator(Counting()).evaluate([design(1, 2), design(1, 1000)], 2)
     assert (good.value, good.diverged_at) == (2.0, None)
     assert (bad.value, bad.diverged_at) == (None, 1)
 
 
-def test_an_objective_that_gives_no_number_stops_the_run() -> None:
-    with pytest.raises(RunError, match="objective: gave the score nan"):
-        attrs.evolve(evaluator(Counting()), objective=Nameless()).evaluate([design(1, 1)], 1)
+def test_a_score_that_is_not_a_number_stops_the_run() -> None:
+    with pytest.raises(ComponentError, match="score nan") as caught:
+        attrs.evolve(evaluator(Counting()), objective=Undefined()).evaluate([design(1, 1)], 1)
+    assert caught.value.component == "objective"

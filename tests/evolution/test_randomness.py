@@ -1,4 +1,4 @@
-"""Streams that belong to names."""
+"""Tests of random streams."""
 
 from hypothesis import given, strategies as st
 
@@ -6,7 +6,7 @@ from evoframe.evolution.randomness import stream
 
 
 @given(st.integers(0, 2**64), st.text(), st.text())
-def test_streams_depend_on_seed_and_name_alone(seed: int, name: str, other: str) -> None:
+def test_streams_depend_only_on_seed_and_name(seed: int, name: str, other: str) -> None:
     first = stream(seed, name).random(3).tolist()
     stream(seed, other).random(5)
     assert stream(seed, name).random(3).tolist() == first

@@ -1,4 +1,4 @@
-"""Files from anyone: what is read, and what is refused in a sentence."""
+"""Tests of reading untrusted files, and of the errors about those that are refused."""
 
 from __future__ import annotations
 
@@ -23,32 +23,35 @@ from evoframe.files.reading import (
 
 
 class TestText:
-    def test_is_that_of_the_file(self, tmp_path: Path) -> None:
+    def test_is_read_unchanged(self, tmp_path: Path) -> None:
         path = tmp_path / "a.txt"
         path.write_bytes("größer\r\n".encode())
         assert read_text(path, 1) == "größer\r\n"
 
-    def test_may_be_as_large_as_is_said_and_no_larger(self, tmp_path: Path) -> None:
+    def test_may_not_exceed_the_maximum_size(self, tmp_path: Path) -> None:
         path = tmp_path / "a.txt"
         path.write_bytes(b"x" * (1 << 20))
         assert len(read_text(path, 1)) == 1 << 20
         path.write_bytes(b"x" * ((1 << 20) + 1))
-        with pytest.raises(InputError, match=r"a\.txt: .* 1 MiB"):
+        with pytest.raises(InputError, match="1 MiB") as caught:
             read_text(path, 1)
+        assert caught.value.source == str(path)
 
     @pytest.mark.parametrize(
-        ("name", "message"),
+        ("name", "cause"),
         [
-            ("missing", "missing: cannot be read: No such file"),
-            (".", "cannot be read: Is a directory"),
-            ("latin-1", "latin-1: is not UTF-8 text"),
-            ("no\0where", r"no\\x00where'?: cannot be read"),
+            ("missing", "No such file"),
+            (".", "Is a directory"),
+            ("latin-1", "UTF-8"),
+            ("no\0where", "null byte|null character"),
         ],
     )
-    def test_that_cannot_be_read_is_named(self, tmp_path: Path, name: str, message: str) -> None:
+    def test_that_cannot_be_read_is_named(self, tmp_path: Path, name: str, cause: str) -> None:
         (tmp_path / "latin-1").write_bytes("größer".encode("latin-1"))
-        with pytest.raises(InputError, match=message):
-            read_text(tmp_path / name, 1)
+        path = tmp_path / name
+        with pytest.raises(InputError, match=cause) as caught:
+            read_text(path, 1)
+        assert caught.value.source == (repr(str(path)) if "\0" in name else str(path))
 
 
 json_values = st.recursive(
@@ -59,76 +62,82 @@ json_values = st.recursive(
 
 
 @given(json_values)
-def test_json_is_what_was_dumped(value: Any) -> None:
+def test_json_is_parsed_to_the_original_value(value: Any) -> None:
     assert parsed_json(json.dumps(value)) == value
 
 
 @pytest.mark.parametrize("text", ["", "{", "[" * 100_000, "1" * 5000, "nope"])
-def test_what_is_no_json_is_one_kind_of_error(text: str) -> None:
-    with pytest.raises(ValueError, match=r"^not valid JSON: "):
+def test_invalid_json_is_a_value_error(text: str) -> None:
+    with pytest.raises(ValueError, match="JSON"):
         parsed_json(text)
 
 
-def test_toml_is_tables() -> None:
+def test_toml_is_parsed_to_tables() -> None:
     assert parsed_toml('[a]\nb = [1, 2.5]\nc.d = "x"', "here") == {"a": {"b": [1, 2.5], "c": {"d": "x"}}}
 
 
 @pytest.mark.parametrize("text", ["a", "a = ", "a = " + "1" * 5000, "a = " + "[" * 100_000])
 @pytest.mark.parametrize("error", [InputError, ConfigurationError])
-def test_what_is_no_toml_is_named_as_the_error_that_was_asked_for(text: str, error: type[InputError]) -> None:
-    with pytest.raises(error, match=r"^my\.toml: not valid TOML: "):
+def test_invalid_toml_is_an_error_of_the_given_type(text: str, error: type[InputError]) -> None:
+    with pytest.raises(error, match="TOML") as caught:
         parsed_toml(text, "my.toml", error)
+    assert caught.value.source == "my.toml"
 
 
 class TestKinds:
-    def test_are_told_apart(self, tmp_path: Path) -> None:
+    def test_files_and_directories_are_distinguished(self, tmp_path: Path) -> None:
         path = tmp_path / "file"
         path.touch()
         assert (is_file(path), is_directory(path)) == (True, False)
         assert (is_file(tmp_path), is_directory(tmp_path)) == (False, True)
 
-    def test_nothing_is_no_file_but_an_error_where_a_directory_is_needed(self, tmp_path: Path) -> None:
+    def test_a_missing_path_is_not_a_file_and_raises_as_a_directory(self, tmp_path: Path) -> None:
         (tmp_path / "file").touch()
         for path in (tmp_path / "missing", tmp_path / "file" / "below"):
             assert not is_file(path)
-            with pytest.raises(InputError, match="cannot be read: "):
+            with pytest.raises(InputError) as caught:
                 is_directory(path)
+            assert caught.value.source == str(path)
 
     @pytest.mark.parametrize("name", ["no\0where", "n" * 5000])
-    def test_a_name_that_no_file_can_have_is_an_error_of_both(self, tmp_path: Path, name: str) -> None:
-        for look in (is_file, is_directory):
-            with pytest.raises(InputError, match="cannot be read: "):
-                look(tmp_path / name)
+    def test_an_impossible_name_raises_in_both(self, tmp_path: Path, name: str) -> None:
+        for test in (is_file, is_directory):
+            with pytest.raises(InputError) as caught:
+                test(tmp_path / name)
+            assert repr(name)[1:-1] in caught.value.source
 
 
-def test_a_name_is_shown_as_text_that_can_be_written(tmp_path: Path) -> None:
-    path = tmp_path / os.fsdecode(b"caf\xe9")  # a name that is no UTF-8
+def test_a_shown_name_can_be_encoded(tmp_path: Path) -> None:
+    path = tmp_path / os.fsdecode(b"caf\xe9")  # a name that is not UTF-8
     path.mkdir()
     assert shown_name(path) == "caf?"
     assert shown_name(tmp_path / "x" / "..") == tmp_path.name
 
 
 class TestLinks:
-    def test_are_refused_wherever_they_lead(self, tmp_path: Path) -> None:
+    def test_are_refused_wherever_they_point(self, tmp_path: Path) -> None:
         (tmp_path / "there").touch()
         here = tmp_path / "here"
         here.mkdir()
         (here / "config.toml").symlink_to(tmp_path / "there")
-        with pytest.raises(InputError, match=r"config\.toml: is a link; a run's directory"):
+        with pytest.raises(InputError, match="a link") as caught:
             refuse_links(here)
+        assert caught.value.source == str(here / "config.toml")
 
-    def test_and_what_would_wait_forever_is_refused(self, tmp_path: Path) -> None:
+    def test_a_pipe_is_refused(self, tmp_path: Path) -> None:
         os.mkfifo(tmp_path / "run.db")
-        with pytest.raises(InputError, match=r"run\.db: is no file"):
+        with pytest.raises(InputError, match="regular file") as caught:
             refuse_links(tmp_path)
+        assert caught.value.source == str(tmp_path / "run.db")
 
-    def test_files_and_directories_are_welcome(self, tmp_path: Path) -> None:
+    def test_files_and_directories_are_accepted(self, tmp_path: Path) -> None:
         (tmp_path / "file").touch()
         (tmp_path / "folder").mkdir()
         refuse_links(tmp_path)
-        refuse_links(tmp_path / "missing")  # of which whoever reads it says so
+        refuse_links(tmp_path / "missing")  # reported by the caller
 
-    def test_what_is_no_directory_is_refused(self, tmp_path: Path) -> None:
+    def test_a_file_instead_of_the_directory_is_refused(self, tmp_path: Path) -> None:
         (tmp_path / "file").touch()
-        with pytest.raises(InputError, match="file: cannot be read: Not a directory"):
+        with pytest.raises(InputError, match="Not a directory") as caught:
             refuse_links(tmp_path / "file")
+        assert caught.value.source == str(tmp_path / "file")

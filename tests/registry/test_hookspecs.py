@@ -1,4 +1,4 @@
-"""The hooks: what plugins may implement, each documented as part of the public API."""
+"""Tests of the hooks: each is documented and versioned as part of the public API."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ HOOKS: dict[str, Callable[..., Any]] = {
 OBSERVED = {"evoframe_run_started", "evoframe_turn_finished", "evoframe_run_finished", "evoframe_commands"}
 
 
-def test_each_kind_of_component_has_one_and_the_others_observe() -> None:
+def test_each_kind_of_component_has_a_hook_and_the_others_observe() -> None:
     kinds = [kind.hook for kind in KINDS.values()]
     assert len(set(kinds)) == len(kinds)
     assert HOOKS.keys() == {*kinds, *OBSERVED}
 
 
 @pytest.mark.parametrize("name", HOOKS)
-def test_each_says_what_it_is_for_and_since_when(name: str) -> None:
+def test_each_documents_its_arguments_and_its_version(name: str) -> None:
     text = inspect.getdoc(HOOKS[name]) or ""
     assert ".. versionadded:: " in text
     parameters = inspect.signature(HOOKS[name]).parameters
@@ -33,7 +33,7 @@ def test_each_says_what_it_is_for_and_since_when(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_hook_of_components_takes_nothing_and_gives_a_mapping_to_classes_of_its_protocol(kind: str) -> None:
+def test_a_hook_of_components_returns_a_mapping_to_classes_of_its_protocol(kind: str) -> None:
     signature = inspect.signature(HOOKS[KINDS[kind].hook])
     assert not signature.parameters
     assert signature.return_annotation == f"Mapping[str, type[{KINDS[kind].protocol.__name__}]]"

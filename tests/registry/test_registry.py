@@ -1,4 +1,4 @@
-"""The registry: what is offered, what is refused, and how names are found."""
+"""Tests of the registry: components on offer, invalid plugins, and the lookup of names."""
 
 from __future__ import annotations
 
@@ -21,18 +21,36 @@ class TestRegistry:
         offer = toy_plugins.find("aggregator", "toy-mean")
         assert (offer.component, offer.source.distribution) == (toys.Mean, "toy-box")
 
-    def test_an_unknown_name_is_answered_with_those_that_exist(self, toy_plugins: Plugins) -> None:
+    def test_an_unknown_name_is_answered_with_the_known_ones(self, toy_plugins: Plugins) -> None:
         with pytest.raises(ConfigurationError) as caught:
             toy_plugins.find("aggregator", "toy-men")
-        assert (
-            str(caught.value) == "unknown aggregator 'toy-men'; did you mean 'toy-mean'? installed: toy-mean"
-        )
+        parts = ("aggregator", "'toy-men'", "'toy-mean'", "installed: toy-mean")
+        assert all(part in caught.value.problem for part in parts)
 
-    def test_two_of_one_name_are_an_error_only_when_asked_for(self, toy_plugins: Plugins) -> None:
+    @pytest.mark.parametrize(
+        ("kind", "name", "meant"),
+        [
+            ("aggregator", "toy-last", "collaboration=toy-last"),
+            ("strategy", "toy-mean", "aggregator=toy-mean"),
+            ("simulator", "toy-drift", "populations.ROLE.evolver=toy-drift"),
+        ],
+    )
+    def test_a_name_of_another_kind_is_answered_with_its_key(
+        self, toy_plugins: Plugins, kind: str, name: str, meant: str
+    ) -> None:
+        with pytest.raises(ConfigurationError) as caught:
+            toy_plugins.find(kind, name)
+        assert f"'{meant}'" in caught.value.problem
+        assert all(each in caught.value.problem for each in toy_plugins.names(kind))
+
+    def test_the_kinds_of_a_name_are_sorted(self, toy_plugins: Plugins) -> None:
+        toy_plugins.add(plugin(evoframe_encoders=lambda: {"toy-mean": toys.Number}), HERE)
+        assert toy_plugins.kinds_of("toy-mean") == ["aggregator", "encoder"]
+        assert toy_plugins.kinds_of("toy") == []
+
+    def test_two_of_one_name_are_an_error_only_when_looked_up(self, toy_plugins: Plugins) -> None:
         toy_plugins.add(plugin(evoframe_aggregators=lambda: {"toy-mean": toys.Mean}), HERE)
-        with pytest.raises(
-            ConfigurationError, match="several plugins; write 'toy-box:toy-mean' or 'here:toy-mean'"
-        ):
+        with pytest.raises(ConfigurationError, match="'toy-box:toy-mean' or 'here:toy-mean'"):
             toy_plugins.find("aggregator", "toy-mean")
         assert toy_plugins.find("aggregator", "here:toy-mean").source == HERE
         assert toy_plugins.find("simulator", "toy-product").component is toys.Product
@@ -42,20 +60,17 @@ class TestRegistry:
         [
             (
                 {"evoframe_agregators": lambda: {"x": toys.Mean}},
-                "unknown hook 'evoframe_agregators'; did you mean 'evoframe_aggreg",
+                "'evoframe_agregators'.*'evoframe_aggregators'",
             ),
-            ({"evoframe_aggregators": lambda: [toys.Mean]}, "must return a mapping of names to classes"),
-            ({"evoframe_aggregators": lambda: {"x": 3}}, "offers 'x': 3, which is no attrs class"),
-            (
-                {"evoframe_aggregators": lambda: {"a:b": toys.Mean}},
-                "offers the name 'a:b'; use lower-case letters",
-            ),
-            ({"evoframe_aggregators": lambda: {"": toys.Mean}}, "offers the name ''; use lower-case letters"),
+            ({"evoframe_aggregators": lambda: [toys.Mean]}, "evoframe_aggregators .*mapping.*Mean"),
+            ({"evoframe_aggregators": lambda: {"x": 3}}, "evoframe_aggregators .*'x': 3.*attrs class"),
+            ({"evoframe_aggregators": lambda: {"a:b": toys.Mean}}, "evoframe_aggregators .*name 'a:b'"),
+            ({"evoframe_aggregators": lambda: {"": toys.Mean}}, "evoframe_aggregators .*name ''"),
             ({"evoframe_turn_finished": lambda trun: None}, "trun"),
-            ({}, "implements no hook"),
+            ({}, "hookimpl"),
         ],
     )
-    def test_what_is_no_plugin_is_refused_as_a_whole(
+    def test_an_invalid_plugin_is_refused_completely(
         self, toy_plugins: Plugins, functions: dict[str, Any], message: str
     ) -> None:
         before = list(toy_plugins.offers)
@@ -71,8 +86,8 @@ class TestRegistry:
         toy_plugins.add(module, HERE)
         assert toy_plugins.find("aggregator", "mine").source == HERE
 
-    def test_the_same_plugin_twice_is_refused_in_a_sentence(self, toy_plugins: Plugins) -> None:
-        with pytest.raises(PluginError, match=r"^there is a plugin of that name already$"):
+    def test_a_plugin_is_registered_only_once(self, toy_plugins: Plugins) -> None:
+        with pytest.raises(PluginError, match="'toy-box:toys'"):
             toy_plugins.add(toys, Source("toy-box", "1.0", "toys"))
 
     def test_names_of_distributions_are_compared_as_packaging_does(self, toy_plugins: Plugins) -> None:

@@ -1,4 +1,4 @@
-"""What workers are given to do; they import it, wherever they are."""
+"""Functions for workers to call, which import this module."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def process(_: object) -> int:
 
 
 def hang(item: object) -> object:
-    """Do nothing at all, for as long as no test lasts; but -1 is done."""
+    """Hang for an hour, longer than any test; return -1 at once."""
     if item != -1:
         time.sleep(3600)
     return item
@@ -36,7 +36,7 @@ def hang_once(marker: Path) -> str:
 
 
 def end_process(code: int) -> int:
-    """End the worker's process: with an exit code, or for a negative number by a signal; but 0 is done."""
+    """End the process with an exit code, or with a signal if *code* is negative; return 0 at once."""
     if code > 0:
         os._exit(code)
     if code < 0:
@@ -52,7 +52,7 @@ def end_process_silently(item: int) -> int:
 
 
 def keep_the_lock(path: Path) -> None:
-    """Hang without ever letting go of Python's lock, as a simulator in C may do."""
+    """Hang without releasing the GIL, as a simulator in C could do."""
     path.write_text(str(os.getpid()))
     ctypes.PyDLL(None).sleep(3600)
 
@@ -69,7 +69,7 @@ def end_process_once(marker: Path) -> str:
 
 
 def fail(item: int) -> int:
-    """Fail for all but 0: in a way that can be made again from its arguments, or in one that cannot."""
+    """Fail unless *item* is 0: with an exception that can be pickled, or with one that cannot."""
     if item == 1:
         raise ZeroDivisionError("item 1")
     if item == 2:
@@ -101,7 +101,7 @@ def mark(path: Path | None) -> None:
 
 
 class UnknownElsewhere:
-    """Travels, and arrives where nobody knows it."""
+    """An object that can be pickled, but not unpickled in another process."""
 
     def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         return (known_here_only, (os.getpid(),))

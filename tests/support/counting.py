@@ -1,4 +1,4 @@
-"""How often a run is read, counted where nothing is below: text parsed, databases opened, checksums made."""
+"""Counters of reads of a run: texts parsed, databases opened, checksums compared."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ TABLES = frozenset((*CHAINED, *SINGLE))
 
 @attrs.define
 class Reads:
-    """What was read of the run in a directory.
+    """Numbers of reads of the run in a directory.
 
     Attributes:
-        parsed: How often its configuration was parsed.
-        opened: How often its database was opened, by whatever name.
-        checked: Table -> how often its rows were compared with their checksums.
+        parsed: Number of times that its configuration was parsed.
+        opened: Number of times that its database was opened, under any name.
+        checked: Table -> number of times that its rows were compared with their checksums.
     """
 
     parsed: int = 0
@@ -36,7 +36,7 @@ class Reads:
 
 
 def counted(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Reads:
-    """Return the numbers of reads from now on, for as long as a test lasts."""
+    """Return the numbers of reads from now until the end of the test."""
     text = (directory / "config.toml").read_text()
     reads, parse, connect, of_rows = Reads(), tomllib.loads, sqlite3.connect, Checksums.of_rows
 

@@ -1,4 +1,4 @@
-"""Networks in plain Python, to compare with: functions and sums from their formulas, one number at a time."""
+"""Reference networks in plain Python: functions and sums from their formulas, one number at a time."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _clamp(z: float, limit: float) -> float:
 
 
 def guard(z: float) -> float:
-    """Return what enters or leaves a node: a NaN is 0, and nothing is beyond the limit."""
+    """Return a value clamped to the limit of inputs and outputs of nodes; NaN becomes 0."""
     return 0.0 if math.isnan(z) else _clamp(z, LIMIT)
 
 
@@ -72,18 +72,18 @@ _FORMULAS: Functions = {
 }
 
 PAPER: Functions = MappingProxyType({name: _guarded(formula) for name, formula in _FORMULAS.items()})
-"""The 23 functions in the order of the paper's table, within the guard."""
+"""The 23 functions in the order of the paper's table, with guarded inputs and outputs."""
 
 NEAT: Functions = MappingProxyType(
     {**PAPER, **{name: _guarded(formula) for name, formula in ActivationFunctionSet().functions.items()}}
 )
-"""The same, but neat-python's own function where it has one."""
+"""The functions of neat-python where it has them, otherwise those of :data:`PAPER`."""
 
 
 def evaluate(
     outputs: int, nodes: Mapping[int, Gene], links: Iterable[tuple[int, int, float]], point: Sequence[float]
 ) -> list[float]:
-    """Return the outputs of a network at one point, going back from each output."""
+    """Return the outputs of a network at one point, evaluated recursively from each output."""
     arcs = list(links)
     known = {-1 - axis: guard(value) for axis, value in enumerate(point)}
 

@@ -1,4 +1,4 @@
-"""Networks of all kinds, without an evolver: an encoder never sees a genome."""
+"""Networks for tests of encoders, without an evolver."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Points = NDArray[np.float64]
 
 
 def network_of(inputs: int, outputs: int, seed: int, scale: float) -> Callable[[Points], Points]:
-    """Return a network that adds in the same order for one point as for many."""
+    """Return a network that adds in the same order for one point and for many."""
     rng = np.random.default_rng(seed)
     weights, bias = rng.normal(size=(inputs, outputs)), rng.normal(size=outputs)
 
@@ -25,7 +25,7 @@ def network_of(inputs: int, outputs: int, seed: int, scale: float) -> Callable[[
 
 
 def point_of(index: tuple[int, ...], canvas: tuple[int, ...], normalized: bool) -> list[float]:
-    """Return where a network is asked about one voxel."""
+    """Return the coordinates of a voxel as the input of a network."""
     if not normalized:
         return [float(i) for i in index]
     return [float(np.linspace(-1, 1, n)[i]) if n > 1 else 0.0 for i, n in zip(index, canvas, strict=True)]

@@ -1,4 +1,4 @@
-"""Graphs of networks of all kinds, to be drawn."""
+"""Graphs of networks for tests of figures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _graphs(draw: Any, cycles: bool) -> NetworkGraph:
     inputs = range(-1, -1 - draw(st.integers(1, 4)), -1)
     outputs = range(draw(st.integers(1, 3)))
     nodes = range(len(outputs) + draw(st.integers(0, 12)))
-    # Without cycles links go to nodes that are later in an order in which outputs are last.
+    # Without cycles, links lead to later nodes of an order in which outputs are last.
     order = [*inputs, *nodes[len(outputs) :], *outputs]
     pairs = st.tuples(st.sampled_from(order), st.sampled_from(nodes)).filter(
         lambda pair: cycles or order.index(pair[0]) < order.index(pair[1])
@@ -30,7 +30,7 @@ def _graphs(draw: Any, cycles: bool) -> NetworkGraph:
 
 
 NETWORKS: st.SearchStrategy[NetworkGraph] = _graphs(cycles=False)
-"""Without cycles; outputs may depend on each other."""
+"""Graphs without cycles; outputs may depend on each other."""
 
 GRAPHS: st.SearchStrategy[NetworkGraph] = _graphs(cycles=True)
-"""With cycles too."""
+"""Graphs with and without cycles."""

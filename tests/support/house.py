@@ -1,4 +1,4 @@
-"""The house as it stands: its modules, what they import, and whether imports go round in circles."""
+"""The source of evoframe: its modules, their imports, and import cycles."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PACKAGES = [CORE, *PLUGIN_PACKAGES, *sorted(path.parent for path in ROOT.glob("l
 
 
 def modules_of(package: Path) -> dict[str, Path]:
-    """Return the dotted name of each module of a package, and its file; a package is its ``__init__``."""
+    """Return dotted name -> file of each module of a package; ``__init__`` has the name of its package."""
     found = {}
     for path in sorted(package.rglob("*.py")):
         parts = path.relative_to(package.parent).with_suffix("").parts
@@ -34,7 +34,7 @@ def modules_of(package: Path) -> dict[str, Path]:
 
 
 def imports_of(path: Path) -> list[tuple[str, str]]:
-    """Return (module, name) of everything that a file imports, wherever in it that stands."""
+    """Return (module, name) of all imports in a file, including nested ones."""
     found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -45,7 +45,7 @@ def imports_of(path: Path) -> list[tuple[str, str]]:
 
 
 def uses(package: Path) -> dict[str, set[str]]:
-    """Return which modules of a package import which others of it; its stub says what lazy names import."""
+    """Return module -> imported modules within a package; its stub defines the imports of lazy names."""
     modules = modules_of(package)
     graph = {name: set(_targets(imports_of(path), modules)) - {name} for name, path in modules.items()}
     stub = package / "__init__.pyi"
@@ -64,7 +64,7 @@ def _targets(imports: Iterable[tuple[str, str]], modules: Iterable[str]) -> Iter
 
 
 def parts(graph: Mapping[str, Iterable[str]], package: str) -> dict[str, set[str]]:
-    """Return which parts of a package, its modules and inner packages, import which others of them."""
+    """Return part -> imported parts of a package; parts are its modules and inner packages."""
 
     def part(module: str) -> str:
         return module.removeprefix(f"{package}.").partition(".")[0]
@@ -77,7 +77,7 @@ def parts(graph: Mapping[str, Iterable[str]], package: str) -> dict[str, set[str
 
 
 def circles(graph: Mapping[str, Iterable[str]]) -> list[list[str]]:
-    """Return the sets of nodes that reach each other, each sorted."""
+    """Return the cycles: sets of nodes that reach each other, each sorted."""
     reached = {node: _reached(graph, node) for node in graph}
     found = {tuple(sorted(n for n in reached[node] if node in reached[n])) for node in graph}
     return sorted(list(circle) for circle in found if circle)

@@ -1,4 +1,4 @@
-"""The loop of coevolution: what it did, and how it is stopped and continued."""
+"""Loops of coevolution: their histories, and loops that are stopped and continued."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from evoframe import Coevolution, RunConfig, Turn, assemble
 
 
 def history(turns: Iterable[Turn]) -> list[Any]:
-    """Return all but the measured time."""
+    """Return the results of turns, without measured times."""
     return [(turn.index, turn.reports, turn.pairs) for turn in turns]
 
 
 def stopped(config: RunConfig, at: int) -> Coevolution:
-    """Return a loop that was left after the turn with the index *at*."""
+    """Return a loop that was stopped after the turn with the index *at*."""
     coevolution = assemble(config)
     for turn in coevolution:
         if turn.index == at:
@@ -24,7 +24,7 @@ def stopped(config: RunConfig, at: int) -> Coevolution:
 
 
 def continued(config: RunConfig, left: Coevolution) -> Coevolution:
-    """Return another loop with the state of *left*, which has passed through JSON."""
+    """Return a new loop with the state of *left*, converted to JSON and back."""
     coevolution = assemble(config)
     coevolution.restore(json.loads(json.dumps(left.state())))
     return coevolution

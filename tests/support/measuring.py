@@ -1,4 +1,4 @@
-"""Measurements of toys."""
+"""Robustness measurements with toy components."""
 
 from __future__ import annotations
 

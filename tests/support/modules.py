@@ -1,4 +1,4 @@
-"""Plugins that are made in a test."""
+"""Plugins that a test creates."""
 
 from __future__ import annotations
 

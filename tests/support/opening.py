@@ -1,4 +1,4 @@
-"""Runs opened by their directories, for as long as a question takes."""
+"""Queries of runs by their directories, which are opened and closed for each query."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Programs in processes of their own, as a person starts them."""
+"""Programs in separate processes, as users start them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OF_THE_TERMINAL = ("FORCE_COLOR", "NO_COLOR", "COLUMNS", "LINES", "TTY_COMPATIB
 
 
 def surroundings() -> dict[str, str]:
-    """Return the environment without what would change what a program shows."""
+    """Return the environment without variables that change the output of a program."""
     kept = {key: value for key, value in os.environ.items() if not key.startswith("EVOFRAME_")}
     return {key: value for key, value in kept.items() if key not in _OF_THE_TERMINAL}
 
@@ -26,7 +26,7 @@ def surroundings() -> dict[str, str]:
 def python(
     *arguments: object, directory: Path | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run this Python with changes to the environment; whether it failed is for the caller to see."""
+    """Run this Python with changes to the environment; the caller checks the exit code."""
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
         cwd=directory,
@@ -39,7 +39,7 @@ def python(
 
 @contextlib.contextmanager
 def started(directory: Path, *arguments: object) -> Iterator[subprocess.Popen[str]]:
-    """Start the program in the background; end it if the test does not."""
+    """Start the program in the background; kill it at the end of the block."""
     with subprocess.Popen(
         [sys.executable, "-m", "evoframe", *map(str, arguments)],
         cwd=directory,
@@ -54,18 +54,18 @@ def started(directory: Path, *arguments: object) -> Iterator[subprocess.Popen[st
 
 
 def told(process: subprocess.Popen[str], words: str) -> str:
-    """Read what a program says up to the line with these *words*, and return that line."""
+    """Read the standard error of a program up to a line that contains *words*; return that line."""
     assert process.stderr is not None
-    said = []
+    lines = []
     for line in process.stderr:
-        said.append(line)
+        lines.append(line)
         if words in line:
             return line
-    raise AssertionError(f"the program ended without {words!r}: {said}")
+    raise AssertionError(f"the program ended without {words!r}: {lines}")
 
 
 def on_a_terminal(arguments: list[str], directory: Path, *, lines: int = 24) -> str:
-    """Return all that a person at a terminal of 80 columns is sent."""
+    """Return the output of the program on a terminal of 80 columns."""
     pid, terminal = pty.fork()
     if pid == 0:
         os.chdir(directory)
@@ -73,7 +73,7 @@ def on_a_terminal(arguments: list[str], directory: Path, *, lines: int = 24) -> 
         command = [sys.executable, "-m", "evoframe", *arguments]
         os.execve(sys.executable, command, terminal_of)  # noqa: S606 - the program under test
     shown = b""
-    with contextlib.suppress(OSError):  # what a terminal reads once its program has ended
+    with contextlib.suppress(OSError):  # raised by reading after the program has ended
         while part := os.read(terminal, 65536):
             shown += part
     assert os.waitpid(pid, 0)[1] == 0, shown

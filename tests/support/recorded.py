@@ -1,4 +1,4 @@
-"""What runs have left in their directories."""
+"""Contents of run directories."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from evoframe.record.checksums import CHAINED, SINGLE, Checksums
 
 TABLES = ("turns", "individuals", "pairs", "best_pairs", "state", "meta")
-"""All but the workload, which is measured in seconds too."""
+"""All tables except the workload, which contains measured times."""
 
 
 def rows(directory: Path, table: str) -> list[tuple[Any, ...]]:
@@ -28,13 +28,13 @@ def assert_same_result(first: Path, second: Path) -> None:
 
 
 def written(directory: Path) -> dict[str, bytes]:
-    """Return the files of a run's result beside its database, by name."""
+    """Return the result files of a run except its database, by name."""
     results = [*directory.glob("champion.*"), *directory.glob("verification.*")]
     return {path.name: path.read_bytes() for path in results}
 
 
 def rewritten(directory: Path, statement: str, *values: Any) -> None:
-    """Change rows, and make all checksums anew, as only somebody can who knows how."""
+    """Change rows and recompute all checksums, as a deliberate forgery would."""
     with contextlib.closing(sqlite3.connect(directory / "run.db")) as database, database:
         assert database.execute(statement, values).rowcount > 0
         database.execute("DELETE FROM checksums")

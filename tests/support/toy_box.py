@@ -1,4 +1,4 @@
-"""The toys as an installed plugin."""
+"""The toy components as an installed plugin."""
 
 from __future__ import annotations
 

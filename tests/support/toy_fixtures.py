@@ -1,4 +1,4 @@
-"""Fixtures: the toy plugin, and configurations and studies made of it."""
+"""Fixtures: the toy plugin, and its configurations and studies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study of toys."""
+"""A study of toy components."""
 
 STUDY = """
 extends = "toy.toml"

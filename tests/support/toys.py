@@ -1,4 +1,4 @@
-"""A plugin of toys, so that the core can be tested without networks and physics.
+"""A plugin of toy components, which test the core without networks and physics.
 
 A genome is a number, a design has one number for each role, and a score is their product.
 """
@@ -39,7 +39,7 @@ class Mean:
 
     def check(self, n: int) -> None:
         if n > 8:
-            raise ConfigurationError(f"{n} scores are too many for toy-mean")
+            raise ConfigurationError(f"{n} scores exceed the 8 of toy-mean")
 
     def aggregate(self, scores: Scores) -> float:
         return float(np.mean(np.sort(scores)))
@@ -64,7 +64,7 @@ class First:
 
 @attrs.frozen
 class Last:
-    """The least fit one, and nobody else."""
+    """Chooses only the least fit member."""
 
     def size(self, n_members: int) -> int:
         return 1
@@ -76,7 +76,7 @@ class Last:
 
 @attrs.frozen
 class Drawn:
-    """Two that chance chooses."""
+    """Chooses two members at random."""
 
     def size(self, n_members: int) -> int:
         return 2
@@ -106,7 +106,7 @@ class Number:
 
 @attrs.frozen
 class Drift:
-    """Keeps its fitter half and adds mutants of it."""
+    """Keeps the fitter half of the population and adds mutants of it."""
 
     step: float = 0.1
 
@@ -179,7 +179,7 @@ class DriftRun:
 
 @attrs.frozen
 class Product:
-    """Multiplies the numbers of all roles; diverges where one is beyond a limit."""
+    """Multiplies the numbers of all roles; diverges if one exceeds a limit."""
 
     limit: float = 1e9
     tracks: ClassVar[tuple[str, ...]] = ("value",)
@@ -208,7 +208,7 @@ class Product:
 
 @attrs.frozen
 class Slow(Product):
-    """Takes its time, so that a test can do something meanwhile."""
+    """Simulates slowly, so that a test can act during a simulation."""
 
     delay: float = 0.1
 
@@ -219,7 +219,7 @@ class Slow(Product):
 
 @attrs.frozen
 class Hanging(Product):
-    """Hangs where numbers are large and a file is missing, which it may make itself."""
+    """Hangs if a number is large and the file *mended* is missing; with *once* it creates the file."""
 
     beyond: float = 0.1
     mended: str = ""
@@ -237,7 +237,7 @@ class Hanging(Product):
 
 @attrs.frozen
 class Unsound(Product):
-    """Fails where a file is missing."""
+    """Fails if a file is missing."""
 
     sound: str = ""
 
@@ -249,9 +249,9 @@ class Unsound(Product):
 
 @attrs.frozen
 class Varied(Product):
-    """Has all that a simulator may offer: files to read and to write, and variants.
+    """Has several optional capabilities: reading, settings, export and variants.
 
-    Its files, ``.toy``, are TOML: ``designs``, and perhaps ``settings``.
+    Its files, ``.toy``, are TOML: ``designs``, and optionally ``settings``.
     """
 
     gain: float = attrs.field(default=1.0, validator=validators.ge(0))
@@ -294,7 +294,7 @@ class Varied(Product):
         try:
             return tomllib.loads(path.read_text())
         except OSError as error:
-            raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+            raise InputError(f"cannot be read: {error.strerror}", source=path) from error
 
     def _design(self, numbers: Mapping[str, float]) -> Design:
         return Design({role: np.array([number], dtype=np.float64) for role, number in numbers.items()})
@@ -302,7 +302,7 @@ class Varied(Product):
 
 @attrs.frozen
 class Steered(Varied):
-    """Draws the number ``b`` between -1 and 1, brings two bodies, and diverges at a large product."""
+    """Draws the number ``b`` between -1 and 1, publishes two bodies, and diverges at a large product."""
 
     most: float = 1e9
     requires: ClassVar[tuple[str, ...]] = ("a", "b")
@@ -322,16 +322,16 @@ class Steered(Varied):
 
 @attrs.frozen
 class Fitting(Varied):
-    """Has two options that must fit together."""
+    """Has two options that depend on each other."""
 
     def __attrs_post_init__(self) -> None:
         if self.gain > self.limit:
-            raise ValueError(f"gain = {self.gain} is more than limit = {self.limit}")
+            raise ValueError(f"gain = {self.gain} exceeds limit = {self.limit}")
 
 
 @attrs.frozen
 class Unverifiable(Varied):
-    """Fails when variants are asked for, after a while, if a file is missing."""
+    """Fails to provide variants, after a delay, if the file *mended* is missing."""
 
     delay: float = 0.0
     mended: str = ""
@@ -346,7 +346,7 @@ class Unverifiable(Varied):
 
 @attrs.frozen
 class Demanding(Product):
-    """Needs a role."""
+    """Requires a role."""
 
     requires: ClassVar[tuple[str, ...]] = ("morphology",)
 
@@ -361,7 +361,7 @@ class Value:
 
 @attrs.frozen
 class Late(Value):
-    """Needs a simulation of some seconds."""
+    """Requires a minimum duration of the simulation."""
 
     unit: ClassVar[str] = "m"
 
@@ -373,7 +373,7 @@ class Late(Value):
 
 
 CLOSED: list[Any] = []
-"""The executors that were closed."""
+"""Executors that were closed."""
 
 
 @attrs.frozen
@@ -392,7 +392,7 @@ class Here:
 
 @attrs.frozen
 class Many:
-    """Says that it has several workers."""
+    """Claims to have several workers."""
 
     workers: int = 4
 

@@ -1,4 +1,4 @@
-"""Turns of a run that nobody has played, for what saves and reads them."""
+"""Generated turns and stores, for tests that save and read them."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _reports(population: str) -> st.SearchStrategy[PopulationReport]:
 
 @st.composite
 def best_pairs(draw: st.DrawFn, turn: int = 0) -> BestPair:
-    """Return a pair with a design of any numbers."""
+    """Return a best pair with a design of arbitrary numbers."""
     values = draw(st.lists(_numbers, min_size=1, max_size=3))
     genomes = draw(st.dictionaries(st.sampled_from(ROLES), st.lists(_numbers, max_size=2)))
     return BestPair(turn, draw(_numbers), {"a": 1, "b": 2}, genomes, Design({"a": np.array(values)}))
@@ -63,7 +63,7 @@ def best_pairs(draw: st.DrawFn, turn: int = 0) -> BestPair:
 
 @st.composite
 def turns(draw: st.DrawFn, most: int = 4) -> list[Turn]:
-    """Return turns that follow each other; what they say need not make sense."""
+    """Return consecutive turns with arbitrary contents."""
     return [
         Turn(
             index=index,
@@ -77,7 +77,7 @@ def turns(draw: st.DrawFn, most: int = 4) -> list[Turn]:
 
 
 def begun(directory: Path, exports: Exports = lambda _: {}) -> Store:
-    """Return the store of a new run in a directory, which is made."""
+    """Create a directory and return the store of a new run in it."""
     directory.mkdir(parents=True)
     (directory / "config.toml").write_text(tomli_w.dumps(CONFIG))
     store = Store.open(directory, SIMULATION, acquire_lock(directory), exports)
@@ -86,5 +86,5 @@ def begun(directory: Path, exports: Exports = lambda _: {}) -> Store:
 
 
 def reopened(directory: Path) -> Store:
-    """Return the store of a run that is there."""
+    """Return the store of an existing run."""
     return Store.open(directory, SIMULATION, acquire_lock(directory))

@@ -1,4 +1,4 @@
-"""The number of cores: those that this process may use, not those that there are."""
+"""Tests of the number of cores that this process may use."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import pytest
 from evoframe import available_cores
 
 
-def test_there_is_at_least_one() -> None:
+def test_at_least_one_core_is_available() -> None:
     assert available_cores() >= 1
 
 
-@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="a process cannot be kept to a core here")
-def test_a_process_that_is_kept_to_one_core_has_one() -> None:
+@pytest.mark.skipif(
+    not hasattr(os, "sched_setaffinity"), reason="this platform cannot bind a process to a core"
+)
+def test_a_process_bound_to_one_core_has_one() -> None:
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(before)})
     try:
@@ -23,7 +25,7 @@ def test_a_process_that_is_kept_to_one_core_has_one() -> None:
         os.sched_setaffinity(0, before)
 
 
-def test_newer_versions_of_python_are_asked_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_newer_versions_of_python_provide_the_count(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "process_cpu_count", lambda: 7, raising=False)
     assert available_cores() == 7
     monkeypatch.setattr(os, "process_cpu_count", lambda: None)
@@ -31,7 +33,7 @@ def test_newer_versions_of_python_are_asked_themselves(monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize(("count", "cores"), [(5, 5), (None, 1)])
-def test_where_nothing_else_is_known_all_cores_count(
+def test_all_cores_count_if_the_affinity_is_unknown(
     monkeypatch: pytest.MonkeyPatch, count: int | None, cores: int
 ) -> None:
     for name in ("process_cpu_count", "sched_getaffinity"):

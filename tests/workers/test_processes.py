@@ -1,4 +1,4 @@
-"""Worker processes: what becomes of an order, and of the workers."""
+"""Tests of worker processes: results, failures and shutdown."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ def workers() -> Iterator[WorkerProcesses]:
     made.close()
 
 
-def test_orders_are_done_in_other_processes(workers: WorkerProcesses) -> None:
+def test_tasks_run_in_other_processes(workers: WorkerProcesses) -> None:
     squares = [workers.schedule(chores.square, [number]) for number in range(8)]
     assert [future.result(LONG) for future in squares] == [number**2 for number in range(8)]
     assert workers.schedule(chores.process, [None]).result(LONG) != os.getpid()
 
 
-def test_an_order_that_raises_raises_here(workers: WorkerProcesses) -> None:
+def test_an_exception_of_a_task_is_raised_in_the_parent(workers: WorkerProcesses) -> None:
     with pytest.raises(ZeroDivisionError, match="item 1"):
         workers.schedule(chores.fail, [1]).result(LONG)
 
 
-def test_an_order_that_takes_too_long_is_ended_and_others_are_done(workers: WorkerProcesses) -> None:
+def test_a_task_beyond_its_time_limit_is_stopped_and_others_complete(workers: WorkerProcesses) -> None:
     late = workers.schedule(chores.hang, ["for long"], 0.3)
     with pytest.raises(TimeoutError):
         late.result(LONG)
@@ -45,34 +45,34 @@ def test_an_order_that_takes_too_long_is_ended_and_others_are_done(workers: Work
 
 
 @pytest.mark.parametrize(
-    ("order", "code", "ending"),
+    ("task", "code", "ending"),
     [
         (chores.end_process, 3, "exit code 3"),
-        (chores.end_process, -signal.SIGKILL, "the signal SIGKILL"),
+        (chores.end_process, -signal.SIGKILL, "SIGKILL"),
         (chores.end_process_silently, 1, "exit code 0"),
     ],
 )
-def test_a_worker_that_ends_by_itself_is_noticed_whatever_it_says(
-    workers: WorkerProcesses, order: object, code: int, ending: str
+def test_the_end_of_a_worker_is_detected_whatever_its_exit_code(
+    workers: WorkerProcesses, task: object, code: int, ending: str
 ) -> None:
-    assert callable(order)
+    assert callable(task)
     with pytest.raises(pebble.ProcessExpired) as caught:
-        workers.schedule(order, [code]).result(LONG)
-    assert WorkerProcesses.ending(caught.value) == ending
+        workers.schedule(task, [code]).result(LONG)
+    assert WorkerProcesses.ending(caught.value).endswith(ending)
 
 
-def test_what_is_not_done_when_the_workers_are_ended_is_lost() -> None:
+def test_tasks_without_a_result_fail_when_the_pool_is_closed() -> None:
     made = WorkerProcesses(1)
-    orders = [made.schedule(chores.hang, [number]) for number in range(3)]
+    tasks = [made.schedule(chores.hang, [number]) for number in range(3)]
     assert made.active
     made.close()
     assert not made.active
-    for order in orders:
+    for task in tasks:
         with pytest.raises(BrokenProcessPool):
-            order.result(LONG)
+            task.result(LONG)
 
 
-def test_a_process_is_prepared_before_its_first_order(tmp_path: Path) -> None:
+def test_a_process_is_initialized_before_its_first_task(tmp_path: Path) -> None:
     made = WorkerProcesses(1, chores.mark, [tmp_path / "prepared"])
     try:
         assert made.schedule(chores.square, [2]).result(LONG) == 4
@@ -102,13 +102,13 @@ def test_a_worker_ends_with_the_process_that_started_it(tmp_path: Path) -> None:
     assert ended.returncode == -signal.SIGKILL, ended.stderr
     worker = int((tmp_path / "worker").read_text())
     until = time.monotonic() + 10
-    while is_there(worker) and time.monotonic() < until:
+    while is_running(worker) and time.monotonic() < until:
         time.sleep(0.02)
-    assert not is_there(worker)
+    assert not is_running(worker)
 
 
-def is_there(process: int) -> bool:
-    """Return whether a process does anything still; one whose parent is gone may wait for burial."""
+def is_running(process: int) -> bool:
+    """Return whether a process is running; a zombie does not count."""
     try:
         state = Path(f"/proc/{process}/stat").read_text()
     except OSError:

@@ -1,4 +1,4 @@
-"""Configurations: presets, files and overrides become one checked value."""
+"""Configurations: presets, files and overrides, resolved into one checked value."""
 
 from evoframe.config.commented import commented, starter
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers

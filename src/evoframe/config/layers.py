@@ -1,4 +1,4 @@
-"""From presets, files and overrides to one tree of tables, knowing where each value came from."""
+"""Merging of presets, files and overrides into one tree of tables that records the origin of each value."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import parsed_toml, read_text
-from evoframe.messages import suggestion
+from evoframe.messages import found, suggestion
 
 __all__ = [
     "Layer",
@@ -29,7 +29,7 @@ __all__ = [
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
 _LARGEST_FILE = 16  # MiB
-_DEEPEST = 32  # tables and lists within each other; no option needs a quarter of that
+_DEEPEST = 32  # levels of nested tables and lists; options need fewer than 8
 
 
 @attrs.frozen
@@ -37,8 +37,8 @@ class Layer:
     """One source of settings.
 
     Attributes:
-        origin: What a person calls it: a file's name, ``preset 'paper'``, ``--set run.seed=2``.
-        tree: Its tables; components are tables with ``name``.
+        origin: The source as errors name it: a file's name, ``preset 'paper'``, ``--set run.seed=2``.
+        tree: The tables; components are tables with ``name``.
     """
 
     origin: str
@@ -47,26 +47,26 @@ class Layer:
 
 @attrs.frozen
 class Layers:
-    """Settings in the order in which they override each other, the last one wins."""
+    """Settings in the order in which they override each other; the last one wins."""
 
     layers: tuple[Layer, ...]
 
     def merged(self) -> Tree:
-        """Return the tree of all layers together."""
+        """Return the merged tree of all layers."""
         result: Tree = {}
         for layer in self.layers:
             result = _merge(result, layer.tree, ())
         return result
 
     def under(self, overrides: Iterable[str | Layer]) -> Layers:
-        """Return the same with *overrides* on top: as for :func:`read_layers`."""
+        """Return a copy with *overrides* on top, given as for :func:`read_layers`."""
         if isinstance(overrides, str):
-            raise TypeError("overrides are a list of strings, not one string")
+            raise TypeError("overrides must be a list of strings, not a string")
         on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
         return Layers((*self.layers, *map(_with_component_tables, on_top)))
 
     def without(self, *keys: str) -> Layers:
-        """Return the same without some keys at the top."""
+        """Return a copy without some top-level keys."""
         return Layers(
             tuple(
                 Layer(layer.origin, {key: value for key, value in layer.tree.items() if key not in keys})
@@ -87,7 +87,7 @@ class Layers:
 
 
 def preset_names() -> list[str]:
-    """Return the names of the presets that come with evoframe."""
+    """Return the names of the built-in presets."""
     return sorted(
         entry.name.removesuffix(".toml")
         for entry in files("evoframe.config").joinpath("presets").iterdir()
@@ -96,25 +96,25 @@ def preset_names() -> list[str]:
 
 
 def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> Layers:
-    """Read a preset or file with what it extends, and put the *overrides* on top.
+    """Read a preset or file and the ones that it extends, and put the *overrides* on top.
 
     Args:
         source: Name of a preset, or path of a TOML file.
-        overrides: Layers, or ``key=value`` with a dotted key and a TOML value, as given to ``--set``; the
-            last one wins.
+        overrides: Layers, or ``key=value`` with a dotted key and a TOML value, as for ``--set``; the last one
+            wins.
 
     Raises:
-        ConfigurationError: Something cannot be read; says what and where.
+        ConfigurationError: A file or an override cannot be read.
     """
     return Layers(()).under(_chain(str(source), Path(), ())).under(overrides)
 
 
 def layers_in(tables: Mapping[str, Any], origin: str) -> Layers:
-    """Return the settings of a complete configuration that was read already.
+    """Return the settings of a complete configuration that was already read.
 
     Args:
-        tables: As in the ``config.toml`` of a run.
-        origin: What a person calls them.
+        tables: Tables of a run's ``config.toml``.
+        origin: Source of the tables, as errors name it.
     """
     own = {key: value for key, value in tables.items() if key not in ("extends", "provenance")}
     return Layers(()).under([Layer(origin, own)])
@@ -129,7 +129,7 @@ def layer_of(origin: str, key: str, value: Any) -> Layer:
 
 
 def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
-    """Return a layer for each dotted key of *settings*, as Python code gives them; ``None`` sets nothing."""
+    """Return a layer for each dotted key of *settings* from Python code; ``None`` leaves a key unset."""
     given = {key: value for key, value in settings.items() if value is not None}
     return [layer_of(f"{key}={value!r}", key, value) for key, value in given.items()]
 
@@ -139,8 +139,8 @@ class _Source:
     """A preset or a file.
 
     Attributes:
-        preset: The name of a preset, or ``None``.
-        path: The path of a file, or ``None``.
+        preset: Name of the preset, or ``None``.
+        path: Path of the file, or ``None``.
     """
 
     preset: str | None = None
@@ -149,7 +149,7 @@ class _Source:
     def __str__(self) -> str:
         return f"preset '{self.preset}'" if self.path is None else str(self.path)
 
-    def is_the_same_as(self, other: _Source) -> bool:
+    def equals(self, other: _Source) -> bool:
         if self.path is None or other.path is None:
             return self == other
         return self.path.resolve() == other.path.resolve()
@@ -162,36 +162,40 @@ class _Source:
 
 def _chain(name: str, relative_to: Path, seen: tuple[_Source, ...]) -> list[Layer]:
     """Return the layer of a preset or file, preceded by those that it extends."""
-    asked = f"{seen[-1]}: extends: " if seen else ""
-    source = _source(name, relative_to, asked)
+    source = _source(name, relative_to, seen)
     try:
         text = source.text()
     except InputError as error:
-        raise ConfigurationError(f"{asked}{error}") from error
-    if any(source.is_the_same_as(other) for other in seen):
-        raise ConfigurationError(f"{source}: extends itself: {' -> '.join(map(str, [*seen, source]))}")
+        if seen:
+            raise _extends_error(seen[-1], str(error)) from error
+        raise ConfigurationError(error.problem, source=error.source, key=error.key) from error
+    if any(source.equals(other) for other in seen):
+        chain = " -> ".join(map(str, [*seen, source]))
+        raise _extends_error(source, f"a file must not extend itself: {chain}")
     tree = _parsed(text, str(source))
-    tree.pop("provenance", None)  # what a run wrote about itself is no setting
+    tree.pop("provenance", None)  # information that a run wrote, not settings
     layer = Layer(str(source), tree)
     base = tree.pop("extends", False if source.preset == "paper" else "paper")
     if base is False:
         return [layer]
     if not isinstance(base, str) or not base:
-        raise ConfigurationError(f"{source}: extends: expected the name of a preset or file, or false")
+        raise _extends_error(source, f"expected the name of a preset or file, or false; found {found(base)}")
     return [*_chain(base, source.path.parent if source.path else Path(), (*seen, source)), layer]
 
 
-def _source(name: str, relative_to: Path, asked: str) -> _Source:
-    """Return the preset or file of a name; *asked* says in errors what wants it."""
+def _source(name: str, relative_to: Path, seen: tuple[_Source, ...]) -> _Source:
+    """Return the preset or file with this *name*, which the last of *seen* extends."""
     known, path = preset_names(), relative_to / name
     if name in known:
         return _Source(preset=name)
     if not name.endswith(".toml") and not path.exists():
-        raise ConfigurationError(
-            f"{asked}there is no preset '{name}'{suggestion(name, known, 'presets')}; "
-            "a file needs the ending .toml"
-        )
+        problem = f"there is no preset '{name}'{suggestion(name, known, 'presets')}; file names end in .toml"
+        raise _extends_error(seen[-1], problem) if seen else ConfigurationError(problem)
     return _Source(path=path)
+
+
+def _extends_error(source: _Source, problem: str) -> ConfigurationError:
+    return ConfigurationError(problem, source=source, key="extends")
 
 
 def _parsed(text: str, origin: str) -> Tree:
@@ -201,22 +205,26 @@ def _parsed(text: str, origin: str) -> Tree:
 
 
 def _refuse_depth(tree: Tree, origin: str) -> None:
-    """Refuse what is nested more deeply than anything that walks through it can follow."""
+    """Refuse nesting that could exceed the recursion limit."""
     level: list[Any] = [tree]
     for _ in range(_DEEPEST):
         inner = [value.values() if isinstance(value, dict) else value for value in level]
         level = [item for values in inner for item in values if isinstance(item, dict | list)]
     if level:
-        raise ConfigurationError(f"{origin}: tables and lists are nested more than {_DEEPEST} deep")
+        raise ConfigurationError(f"tables and lists are nested more than {_DEEPEST} deep", source=origin)
 
 
 def _override(text: str) -> Layer:
     key, equals, value = text.partition("=")
     key = key.strip()
     if not equals or not _KEY.fullmatch(key):
-        raise ConfigurationError(f"--set {text}: expected key=value, as in aggregator=hm or run.seed=2")
+        raise ConfigurationError(
+            "expected key=value, as in aggregator=hm or run.seed=2", source=f"--set {text}"
+        )
     if key.count(".") >= _DEEPEST:
-        raise ConfigurationError(f"--set {text[:80]}...: tables are nested more than {_DEEPEST} deep")
+        raise ConfigurationError(
+            f"tables are nested more than {_DEEPEST} deep", source=f"--set {text[:80]}..."
+        )
     return layer_of(f"--set {text}", key, _value(text, value.strip()))
 
 
@@ -225,7 +233,7 @@ def _value(text: str, value: str) -> Any:
         return value
     tree = _parsed(f"value = {value}", f"--set {text}")
     if list(tree) != ["value"]:
-        raise ConfigurationError(f"--set {text}: the right side must be one TOML value")
+        raise ConfigurationError("the right side must be one TOML value", source=f"--set {text}")
     return tree["value"]
 
 
@@ -250,7 +258,7 @@ def _merge(base: Any, over: Any, path: tuple[str, ...]) -> Any:
     if not (isinstance(base, dict) and isinstance(over, dict)):
         return over
     if _is_component(path) and "name" in over and over["name"] != base.get("name"):
-        return over  # the options of another component must not linger
+        return over  # drop the options of the other component
     merged = dict(base)
     for key, value in over.items():
         merged[key] = _merge(base[key], value, (*path, key)) if key in base else value

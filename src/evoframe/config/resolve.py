@@ -1,4 +1,4 @@
-"""From presets, files and overrides to a configuration that is checked as a whole before anything runs."""
+"""Resolution of presets, files and overrides into a configuration, checked completely before a run."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any, TypeVar, cast
 import attrs
 from attrs import validators
 
+from evoframe.config.hints import SECTIONS, known_keys, unknown_key, with_hints
 from evoframe.config.labels import label_of
 from evoframe.config.layers import Layer, Layers, layer_of, read_layers
 from evoframe.contract import (
@@ -25,7 +26,7 @@ from evoframe.contract import (
 )
 from evoframe.documents import Fault, StructureError, Tree, structure
 from evoframe.errors import ConfigurationError, PluginError
-from evoframe.messages import found, suggestion
+from evoframe.messages import found
 from evoframe.registry import KINDS, Offer, Plugins, discover
 
 __all__ = ["load_config", "named_simulator", "resolve_layers"]
@@ -44,15 +45,15 @@ def load_config(
 
     Args:
         source: Name of a preset, or path of a TOML file.
-        overrides: What is set on top of that, the last one wins: ``key=value`` with a dotted key and a TOML
-            value, as given to ``--set``, or layers of tables.
-        plugins: The plugins to choose from; by default those that are installed.
+        overrides: Settings on top of that; the last one wins: ``key=value`` with a dotted key and a TOML
+            value, as for ``--set``, or layers of tables.
+        plugins: The plugins to choose from; by default the installed ones.
 
     Raises:
-        ConfigurationError: With all faults that were found, each with its file and key.
+        ConfigurationError: The configuration is invalid; lists all faults, each with its file and key.
     """
     if not isinstance(source, str | Path):
-        raise TypeError(f"a configuration is named by a preset or a file, not by {type(source).__name__}")
+        raise TypeError(f"expected the name of a preset or the path of a file, found {type(source).__name__}")
     base = read_layers(source)
     layers = base.under(overrides)
     label = label_of(source, layers.layers[len(base.layers) :])
@@ -63,12 +64,12 @@ def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
     """Resolve and check a configuration that was read.
 
     Args:
-        layers: What was read.
-        label: What a person calls it.
+        layers: The settings.
+        label: Name of the configuration, for the default directory.
         plugins: The plugins to choose from.
 
     Raises:
-        ConfigurationError: With all faults that were found, each with its file and key.
+        ConfigurationError: The configuration is invalid; lists all faults, each with its file and key.
     """
     reading = _Reading(layers.merged())
     settings = reading.section("plugins", PluginSettings) or PluginSettings()
@@ -83,10 +84,10 @@ def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
 def named_simulator(
     source: str | Path, overrides: Sequence[str | Layer], plugins: Plugins
 ) -> Chosen[Simulator] | None:
-    """Return the simulator that a configuration names, to be asked which settings a file brings with it.
+    """Return the simulator that a configuration names, for reading the settings that a file contains.
 
-    Its options are those of the preset as far as they make a simulator: what is set on top of the preset may
-    only fit together with the settings of the file.
+    Overrides of its options are ignored if the preset alone gives a valid simulator: they may be valid only
+    together with the settings of the file.
 
     Args:
         source: Name of a preset, or path of a TOML file.
@@ -129,7 +130,7 @@ class _Size:
 
 
 class _Reading:
-    """One pass over a tree, which collects faults instead of stopping at the first."""
+    """A pass over a tree that collects faults instead of stopping at the first."""
 
     def __init__(self, tree: Tree) -> None:
         self.tree = tree
@@ -147,13 +148,14 @@ class _Reading:
 
     def config(self, plugins: Plugins, settings: PluginSettings, label: str) -> RunConfig | None:
         """Return the configuration, or ``None`` if there are faults."""
-        self._refuse_unknown_keys()
+        self._refuse_unknown_keys(plugins)
         run = self.section("run", RunSettings)
         choose = functools.partial(self.chosen, plugins)
         populations = self._populations(choose)
         chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
         self.faults += _Checks(populations, chosen).faults()
         if self.faults:
+            self.faults = with_hints(self.faults, known_keys(self.tree, plugins))
             return None
         return RunConfig(
             run=cast("RunSettings", run),
@@ -166,7 +168,7 @@ class _Reading:
     def chosen(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Chosen[Any] | None:
         """Return the component that a table names, or ``None`` if there are faults."""
         if not isinstance(table, Mapping) or not isinstance(table.get("name"), str):
-            message = f"expected the name of one of {', '.join(plugins.names(kind))}, or a table with name"
+            message = f"expected one of {', '.join(plugins.names(kind))}, or a table with the key 'name'"
             self.faults.append(Fault(path, f"{message}; found {found(table)}"))
             return None
         options = {key: value for key, value in table.items() if key != "name"}
@@ -178,9 +180,9 @@ class _Reading:
         component = self._structured(options, offer.component, path)
         if component is None:
             return None
-        breaches = [Fault(path, message) for message in _breaches(offer, component)]
-        self.faults += breaches
-        return None if breaches else Chosen(table["name"], component, offer.source)
+        violations = [Fault(path, message) for message in _violations(offer, component)]
+        self.faults += violations
+        return None if violations else Chosen(table["name"], component, offer.source)
 
     def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
         try:
@@ -189,18 +191,19 @@ class _Reading:
             self.faults += error.faults
             return None
 
-    def _refuse_unknown_keys(self) -> None:
-        known = ["run", "populations", *COMPONENTS, "plugins"]
-        for key in self.tree:
+    def _refuse_unknown_keys(self, plugins: Plugins) -> None:
+        for key, value in self.tree.items():
             if key == "extends":
                 self.faults.append(Fault((key,), "can only be set in a file"))
-            elif key not in known:
-                self.faults.append(Fault((key,), f"unknown key{suggestion(key, known, 'keys')}"))
+            elif key not in SECTIONS:
+                self.faults.append(Fault((key,), unknown_key(key, value, self.tree, plugins)))
 
     def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
         tables = self.tree.get("populations")
         if not isinstance(tables, Mapping) or len(tables) < 2:
-            self.faults.append(Fault(("populations",), "expected at least two tables [populations.ROLE]"))
+            count = len(tables) if isinstance(tables, Mapping) else 0
+            message = f"expected at least two tables [populations.ROLE], found {count}"
+            self.faults.append(Fault(("populations",), message))
             return {}
         return {role: self._population(role, table, choose) for role, table in tables.items()}
 
@@ -209,11 +212,12 @@ class _Reading:
     ) -> PopulationConfig | None:
         path = ("populations", role)
         if role in _RESERVED_ROLES:
-            self.faults.append(Fault(path, f"'{role}' is a column of the database; choose another name"))
+            self.faults.append(Fault(path, f"'{role}' is a column name of the database; choose another role"))
         elif not is_role(role):
-            self.faults.append(Fault(path, f"'{role}': use lower-case letters, digits, - and _"))
+            message = f"invalid role '{role}'; use lower-case letters, digits, - and _, with a letter first"
+            self.faults.append(Fault(path, message))
         if not isinstance(table, Mapping):
-            self.faults.append(Fault(path, f"expected a table, found {found(table)}"))
+            self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
             return None
         rest = {key: value for key, value in table.items() if key not in POPULATION_COMPONENTS}
         size = self._structured(rest, _Size, path)
@@ -226,7 +230,7 @@ class _Reading:
 
 
 class _Checks:
-    """What components demand of each other; skips what a fault found earlier leaves undecided."""
+    """Checks between components; checks that earlier faults make impossible are skipped."""
 
     def __init__(
         self,
@@ -257,7 +261,8 @@ class _Checks:
                 yield Fault(("collaboration",), f"{error} (population '{role}')")
                 return
         if len(self.populations) > 2 and len(counts) > 1:
-            message = f"populations of different sizes give different numbers of collaborators: {counts}"
+            listed = ", ".join(map(str, sorted(counts)))
+            message = f"populations of different sizes give different numbers of collaborators: {listed}"
             yield Fault(("collaboration",), message)
         if "aggregator" in self.chosen:
             for count in sorted(counts):
@@ -273,15 +278,15 @@ class _Checks:
             path = ("populations", role, "encoder")
             for needed in encoder.requires:
                 if needed not in provided:
-                    yield Fault(path, f"needs the role '{needed}' from a population before it")
+                    yield Fault(path, f"requires the role '{needed}', which no earlier population provides")
             for given in encoder.provides:
                 if given in provided:
-                    yield Fault(path, f"provides the role '{given}', which another population provides too")
+                    yield Fault(path, f"provides the role '{given}', which an earlier population provides")
             provided += encoder.provides
         simulator = self.chosen.get("simulator")
         for needed in simulator.requires if simulator else ():
             if needed not in provided:
-                yield Fault(("simulator",), f"needs the role '{needed}', which no population provides")
+                yield Fault(("simulator",), f"requires the role '{needed}', which no population provides")
 
     def _record(self) -> Iterator[Fault]:
         if "simulator" in self.chosen and "objective" in self.chosen:
@@ -289,16 +294,16 @@ class _Checks:
             yield from _refusal(("objective",), check, involves=("simulator",))
 
 
-def _breaches(offer: Offer, component: Any) -> Iterator[str]:
-    """Yield what keeps a component from being one of its kind."""
+def _violations(offer: Offer, component: Any) -> Iterator[str]:
+    """Yield the violations of the protocol of a component's kind."""
     where = f"{offer.kind} '{offer.name}' of plugin {offer.source}"
     protocol = KINDS[offer.kind].protocol
     members = sorted(name for name in dir(protocol) if not name.startswith("_"))
     missing = [name for name in members if not hasattr(component, name)]
     if missing:
-        yield f"{where} has no {' and no '.join(missing)}"
+        yield f"{where} lacks {', '.join(missing)}"
     if not attrs.inspect(type(component)).is_frozen:
-        yield f"{where} is no frozen attrs class: its options could change while a run goes on"
+        yield f"{where} is not a frozen attrs class, so its options could change during a run"
 
 
 def _refusal(

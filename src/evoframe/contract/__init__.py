@@ -1,4 +1,4 @@
-"""The contract between the core and its plugins: protocols, values, and the value of a configuration."""
+"""The contract between the core and its plugins: protocols, values, and the resolved configuration."""
 
 from evoframe.contract.blame import blaming
 from evoframe.contract.config import (

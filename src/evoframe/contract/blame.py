@@ -1,4 +1,4 @@
-"""Whose fault it is: what goes wrong in a component is reported as the component's."""
+"""Attribution of exceptions to the components that raise them."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ __all__ = ["blaming"]
 
 @contextlib.contextmanager
 def blaming(component: str, concerns: str = "") -> Iterator[None]:
-    """Report whatever a component raises as its own.
+    """Wrap exceptions raised by a component in :class:`ComponentError`.
 
-    Errors of evoframe pass: they are meant to be read by a person, and say themselves whose they are.
+    Errors of evoframe are not wrapped: they already name their cause.
 
     Args:
-        component: Its dotted key in a configuration, such as ``populations.controller.evolver``.
-        concerns: Which individual it was about.
+        component: Dotted key of the component in the configuration, such as
+            ``populations.controller.evolver``.
+        concerns: Individual that the component was processing.
 
     Raises:
-        ComponentError: The component raised something.
+        ComponentError: The component raised an exception.
     """
     try:
         yield

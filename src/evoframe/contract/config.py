@@ -1,4 +1,4 @@
-"""A configuration: everything that decides a run, as frozen classes."""
+"""The resolved configuration, which determines a run, as frozen classes."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ COMPONENTS: Mapping[str, str] = {
     "objective": "objective",
     "executor": "executor",
 }
-"""Top-level key -> kind of the component that is chosen there."""
+"""Top-level key -> kind of the component that it chooses."""
 
 POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "evolver"}
-"""Key within a population -> kind of the component that is chosen there."""
+"""Key within a population -> kind of the component that it chooses."""
 
 
 @attrs.frozen(order=True)
 class Source:
-    """Where a plugin comes from.
+    """The origin of a plugin.
 
     Attributes:
         distribution: Name of the installed distribution, or of the local module given with ``-p``.
@@ -71,8 +71,8 @@ class RunSettings:
     """The table ``[run]``.
 
     Attributes:
-        seed: The one seed from which all random streams derive.
-        generations: How often each population reproduces (the paper: 200, so 400 turns of two populations).
+        seed: Seed from which all random streams derive.
+        generations: Generations per population (the paper: 200, so 400 turns of two populations).
     """
 
     seed: int = attrs.field(default=1, validator=validators.ge(0))
@@ -94,10 +94,10 @@ class PluginSettings:
 
 @attrs.frozen
 class Chosen(Generic[C]):
-    """A component that was chosen by name.
+    """A component chosen by name.
 
     Attributes:
-        name: Its name in the configuration.
+        name: Name in the configuration.
         component: The instance, with its options.
         source: The plugin that offers it.
     """
@@ -124,17 +124,17 @@ class PopulationConfig:
 
 @attrs.frozen
 class RunConfig:
-    """Everything that decides a run, resolved and checked.
+    """Everything that determines a run, resolved and checked.
 
     Attributes:
         run: Seed and length.
-        populations: Role -> population, in the order in which they take turns and are decoded.
+        populations: Role -> population, in the order of turns and of decoding.
         collaboration: Chooses collaborators.
-        aggregator: Folds scores into fitness.
+        aggregator: Aggregates scores into fitness.
         simulator: Simulates designs.
         objective: Scores outcomes.
-        executor: Spreads simulations over workers.
-        plugins: What is blocked and required.
+        executor: Distributes simulations over workers.
+        plugins: Blocked and required distributions.
         label: Name of the preset or file, for the default directory.
     """
 
@@ -157,7 +157,7 @@ class RunConfig:
             yield key, getattr(self, key)
 
     def tables(self) -> Tree:
-        """Return the configuration as TOML tables, every default written out."""
+        """Return the configuration as TOML tables that include every default."""
         populations = {
             role: {
                 "size": population.size,
@@ -175,21 +175,21 @@ class RunConfig:
         }
 
     def deciding(self) -> Tree:
-        """Return the tables on which the result depends, all but the executor, as JSON values."""
+        """Return the tables that determine the result (all but the executor) as JSON values."""
         kept = {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
         return as_read(kept)
 
     def simulation(self) -> Tree:
-        """Return the tables that say how a design is simulated and scored."""
+        """Return the tables that determine the simulation and the score of a design."""
         return {key: _table(getattr(self, key)) for key in ("simulator", "objective")}
 
     def to_toml(self) -> str:
-        """Return the configuration as the text of a TOML file that means the same."""
+        """Return the text of an equivalent TOML file."""
         return tomli_w.dumps(self.tables())
 
 
 def is_role(name: str) -> bool:
-    """Return whether a population may be called so."""
+    """Return whether *name* is a valid name of a population."""
     return re.fullmatch(r"[a-z][a-z0-9_-]*", name) is not None
 
 

@@ -1,6 +1,6 @@
-"""What components give to be drawn: a body as meshes that move, a network as a graph.
+"""Drawable values that components provide: bodies as moving meshes, and networks as graphs.
 
-The core draws what it is given; only a simulator knows what its designs look like.
+The core draws these values; only a simulator knows the shape of its designs.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ __all__ = ["Geometry", "GeometryPart", "NetworkGraph", "NetworkLink"]
 
 @attrs.frozen(eq=False)
 class GeometryPart:
-    """Something of one colour.
+    """A part of a body in one color.
 
     Attributes:
-        name: What a legend calls it, such as ``contractile``.
-        colour: ``#rrggbb``.
-        opacity: From 0 to 1; what surrounds other parts is best translucent.
+        name: Name in the legend, such as ``contractile``.
+        colour: Color as ``#rrggbb``.
+        opacity: From 0 to 1; a part that encloses others should be translucent.
         vertices: ``float64[frames, n, 3]``, m.
-        faces: ``int64[m, 4]``, the corners of quadrilaterals as indices of vertices, counter-clockwise as
-            seen from outside.
+        faces: ``int64[m, 4]``, corners of quadrilaterals as indices of vertices, counter-clockwise seen from
+            outside.
     """
 
     name: str
@@ -36,12 +36,12 @@ class GeometryPart:
 
 @attrs.frozen(eq=False)
 class Geometry:
-    """A design as it looks at several times.
+    """The shape of a design at several times.
 
     Attributes:
         times: ``float64[frames]``, s, ascending; the first is 0, before the first step.
-        parts: What it consists of; all have as many frames.
-        tracks: The points that the simulator follows, name -> ``float64[frames, 3]``, m.
+        parts: Parts of the body, each with the same number of frames.
+        tracks: Points that the simulator tracks, name -> ``float64[frames, 3]``, m.
     """
 
     times: NDArray[np.float64]
@@ -54,9 +54,9 @@ class NetworkLink:
     """A connection of a network.
 
     Attributes:
-        start: The node that it comes from.
-        end: The node that it goes to.
-        weight: What it multiplies with.
+        start: Source node.
+        end: Target node.
+        weight: Factor of the value of the source node.
     """
 
     start: int
@@ -69,10 +69,10 @@ class NetworkGraph:
     """A network as a genome encodes it.
 
     Attributes:
-        inputs: The ids of input nodes, in order.
-        outputs: The ids of output nodes, in order.
-        labels: What stands at a node, such as the name of its activation: one for each node but the inputs.
-        links: The connections that are enabled.
+        inputs: Ids of the input nodes, in order.
+        outputs: Ids of the output nodes, in order.
+        labels: Label of each node except the inputs, such as the name of its activation function.
+        links: The enabled connections.
     """
 
     inputs: tuple[int, ...]

@@ -1,8 +1,8 @@
 """Optional capabilities of components, one protocol each.
 
-A component offers a capability by having its members; nothing is registered. The core asks with
-``isinstance``, which finds the members and does not look at their signatures: the contract tests of
-:mod:`evoframe.testing` do.
+A component has a capability if it has all members of the protocol; no registration is required. The core
+tests this with ``isinstance``, which does not check signatures; the contract tests of :mod:`evoframe.testing`
+do.
 """
 
 from __future__ import annotations
@@ -39,19 +39,19 @@ __all__ = [
 
 @runtime_checkable
 class SupportsProvenance(Protocol):
-    """A component of any kind with something to add to the provenance of a run."""
+    """A component of any kind that contributes to the provenance of a run."""
 
     def provenance(self) -> Mapping[str, str]:
-        """Return names and versions for the table ``[provenance.libraries]``, such as that of a library."""
+        """Return names and versions, such as those of libraries, for ``[provenance.libraries]``."""
 
 
 @runtime_checkable
 class SupportsExemptions(Aggregator, Protocol):
-    """An aggregator that breaks a law of its protocol on purpose (``evoframe.testing``)."""
+    """An aggregator that deliberately violates a law of its protocol (``evoframe.testing``)."""
 
     @property
     def exempt_from(self) -> Mapping[str, str]:
-        """Name of a law (``bounded``, ``idempotent``, ``monotone``) -> the reason; a class attribute."""
+        """Name of a law (``bounded``, ``idempotent``, ``monotone``) -> reason; a class attribute."""
 
 
 @runtime_checkable
@@ -59,21 +59,21 @@ class SupportsReading(Simulator, Protocol):
     """A simulator that reads designs from files (``evoframe simulate``, ``verify``, ``robustness``)."""
 
     def read(self, path: Path) -> Sequence[tuple[str, Design]]:
-        """Return the designs of a file with their labels, at least one.
+        """Return the designs of a file, at least one, with their labels.
 
         Raises:
-            InputError: The file cannot be read, or is of no known format; the message names it.
+            InputError: The file cannot be read, or its format is unknown; the error names the file.
         """
 
 
 @runtime_checkable
 class SupportsSettings(Simulator, Protocol):
-    """A simulator that knows files which bring settings with them."""
+    """A simulator that reads files which contain settings."""
 
     def settings_of(self, path: Path) -> Mapping[str, Any] | None:
-        """Return the options that a file brings, as TOML values; ``None`` if it brings none.
+        """Return the options that a file contains, as TOML values; ``None`` if it contains none.
 
-        Every option that matters is given, so that nothing of a preset lingers.
+        The result includes every relevant option, so that none is taken from a preset.
 
         Raises:
             InputError: The file cannot be read.
@@ -82,14 +82,14 @@ class SupportsSettings(Simulator, Protocol):
 
 @runtime_checkable
 class SupportsExport(Simulator, Protocol):
-    """A simulator that writes designs as files of other programs (``evoframe export``)."""
+    """A simulator that writes designs as files for other programs (``evoframe export``)."""
 
     @property
     def formats(self) -> tuple[str, ...]:
-        """Formats, each named by the ending of its files."""
+        """Formats, each named by the extension of its files."""
 
     def export(self, design: Design, format_: str) -> Export:
-        """Return *design* with the simulator's settings in one of the formats; equal designs, equal bytes.
+        """Return *design* and the simulator's settings in a format; equal designs give equal bytes.
 
         Raises:
             ConfigurationError: The format cannot express the settings.
@@ -99,15 +99,15 @@ class SupportsExport(Simulator, Protocol):
 
 @attrs.frozen(eq=False)
 class Variant:
-    """A simulation of a design with one thing changed, which shows what its score rests on.
+    """A simulation with one change, which shows how the score depends on it.
 
     Attributes:
-        name: What was changed, as the table of ``evoframe verify`` shows it. Variants of one name are draws
+        name: The change, as shown in the table of ``evoframe verify``. Variants with the same name are draws
             of one random change.
-        simulator: Simulates it.
-        design: What is simulated.
-        record: What is recorded: as many samples of the same tracks as in the unchanged simulation, so that
-            the same objective can score them.
+        simulator: Simulator of the variant.
+        design: Design to simulate.
+        record: Samples to record: as many of the same tracks as in the unchanged simulation, so that the same
+            objective can score them.
     """
 
     name: str
@@ -121,17 +121,17 @@ class SupportsVariants(Simulator, Protocol):
     """A simulator that offers variants of a simulation (``evoframe verify``)."""
 
     def variants(self, design: Design, record: Record) -> Sequence[Variant]:
-        """Return simulations of *design* with one thing changed in each; equal arguments, equal variants."""
+        """Return simulations of *design* with one change each; equal arguments give equal variants."""
 
 
 @runtime_checkable
 class SupportsGeometry(Simulator, Protocol):
-    """A simulator that describes the shape of its designs (figures and pages of reports)."""
+    """A simulator that provides the shape of its designs (figures and pages of reports)."""
 
     def geometry(self, design: Design, frames: int) -> Geometry:
-        """Return a design at rest, and at *frames* - 1 later times at most.
+        """Return a design at rest and at up to *frames* - 1 later times.
 
-        With more than one frame the design is simulated, from the start to the end or to the divergence.
+        With more than one frame, the design is simulated until the end or until it diverges.
         """
 
 
@@ -140,15 +140,15 @@ class SupportsRandomControllers(Simulator, Protocol):
     """A simulator that draws random controllers (``evoframe robustness``)."""
 
     def random_controller(self, design: Design, rng: np.random.Generator) -> Design:
-        """Return the same body with a controller drawn at random.
+        """Return the same body with a random controller.
 
-        The same state of *rng* gives bodies of the same shape the same controller, whatever they are made of.
+        The same state of *rng* gives bodies of the same shape the same controller, whatever their materials.
         """
 
 
 @runtime_checkable
 class SupportsPublished(Simulator, Protocol):
-    """A simulator that brings published bodies (``evoframe robustness --published``)."""
+    """A simulator that includes published bodies (``evoframe robustness --published``)."""
 
     def published(self) -> Sequence[tuple[str, Design]]:
         """Return the bodies with their labels."""
@@ -160,7 +160,7 @@ class SupportsInputNames(Encoder, Protocol):
 
     @property
     def input_names(self) -> tuple[str, ...]:
-        """One word for each input."""
+        """One name for each input."""
 
 
 @runtime_checkable
@@ -169,7 +169,7 @@ class SupportsOutputNames(Encoder, Protocol):
 
     @property
     def output_names(self) -> tuple[str, ...]:
-        """One word for each output."""
+        """One name for each output."""
 
 
 @runtime_checkable
@@ -177,15 +177,15 @@ class SupportsGraph(Evolver, Protocol):
     """An evolver whose genomes can be drawn as graphs (figures of networks)."""
 
     def graph(self, genome: Any, inputs: int, outputs: int) -> NetworkGraph:
-        """Return the graph of a genome whose network has so many *inputs* and *outputs*.
+        """Return the graph of a genome.
 
         Args:
-            genome: As :meth:`~evoframe.EvolverRun.dump` gives it, perhaps from a file that somebody changed.
+            genome: Genome from :meth:`~evoframe.EvolverRun.dump`, possibly from a file that was changed.
             inputs: Number of inputs of its network.
             outputs: Number of outputs of its network.
 
         Raises:
-            ValueError: The genome is damaged; the message says how.
+            ValueError: The genome is invalid; the message describes the fault.
         """
 
 
@@ -195,7 +195,7 @@ class SupportsUnit(Objective, Protocol):
 
     @property
     def unit(self) -> str:
-        """Such as ``m``."""
+        """Unit, such as ``m``."""
 
 
 def unit_of(objective: Objective) -> str:

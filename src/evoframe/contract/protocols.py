@@ -1,8 +1,8 @@
-"""What a component must do.
+"""The protocols of components.
 
-A component is a *frozen attrs class*: its fields are its options. What needs state while a run goes on is
-returned by ``start``. What a component may offer besides is in :mod:`evoframe.contract.optional`. The laws
-that each protocol names are tests in :mod:`evoframe.testing`.
+A component is a *frozen attrs class*, whose fields are its options. ``start`` returns the objects that have
+state during a run. Optional capabilities are in :mod:`evoframe.contract.optional`.
+:mod:`evoframe.testing` tests the laws that each protocol names.
 """
 
 from __future__ import annotations
@@ -32,28 +32,29 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 Network: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
-"""What a genome expresses: ``float64[n, inputs] -> float64[n, outputs]``, all points at once, finite."""
+"""A network: ``float64[n, inputs] -> float64[n, outputs]``, all points at once, with finite outputs."""
 
 
 @runtime_checkable
 class Aggregator(Protocol):
-    """Folds the scores that an individual got with its collaborators into its fitness.
+    """Aggregates the scores of an individual with its collaborators into its fitness.
 
-    Laws: the order of the scores is irrelevant, to the last bit; the result is finite for finite scores up to
-    1e100; and for scores within ``domain``, to a relative 1e-12: min <= result <= max, equal scores give that
-    score, and the result is no less when a score grows. A class may break one of the last three laws if it
-    says why: see :class:`~evoframe.SupportsExemptions`.
+    Laws: the result does not depend on the order of the scores, bit for bit; it is finite for finite scores
+    up to 1e100. For scores within ``domain``, up to a relative 1e-12: min <= result <= max (bounded), equal
+    scores give that score (idempotent), and the result does not decrease when a score increases (monotone). A
+    class may violate the last three laws if it states the reasons: see
+    :class:`~evoframe.SupportsExemptions`.
     """
 
     @property
     def domain(self) -> tuple[float, float]:
-        """The least and the greatest score for which all laws hold."""
+        """Minimum and maximum score for which all laws hold."""
 
     def check(self, n: int) -> None:
         """Refuse a number of collaborators before anything runs.
 
         Raises:
-            ConfigurationError: *n* scores cannot be aggregated; says what could be.
+            ConfigurationError: *n* scores cannot be aggregated; names the numbers that can.
         """
 
     def aggregate(self, scores: Scores) -> float:
@@ -62,14 +63,14 @@ class Aggregator(Protocol):
 
 @runtime_checkable
 class CollaborationStrategy(Protocol):
-    """Chooses the members of another population that individuals are judged with.
+    """Chooses the members of another population with which individuals are evaluated.
 
-    Laws: valid indices, no repeats, as many as declared; the same state of *rng* gives the same choice; ties
-    are broken by index; no diverged member is chosen while a clean one is left.
+    Laws: indices are valid, unique, and as many as declared; the same state of *rng* gives the same choice;
+    ties are broken by index; a diverged member is chosen only if no other is left.
     """
 
     def size(self, n_members: int) -> int:
-        """Return how many collaborators are chosen from a population of *n_members*.
+        """Return the number of collaborators chosen from a population of *n_members*.
 
         Raises:
             ConfigurationError: The population is too small; the message names both numbers.
@@ -83,7 +84,7 @@ class CollaborationStrategy(Protocol):
 class Encoder(Protocol):
     """Decodes a network into its part of a design.
 
-    Laws: roles, shapes and dtypes as declared; pure; total: every network gives a design.
+    Laws: roles, shapes and dtypes are as declared; decoding is pure, and total: every network gives a design.
 
     It may offer :class:`~evoframe.SupportsInputNames` and :class:`~evoframe.SupportsOutputNames`.
     """
@@ -98,48 +99,48 @@ class Encoder(Protocol):
 
     @property
     def requires(self) -> tuple[str, ...]:
-        """Roles that must be part of a design before :meth:`decode`."""
+        """Roles that a design must have before :meth:`decode`."""
 
     @property
     def provides(self) -> tuple[str, ...]:
         """Roles that :meth:`decode` adds to a design."""
 
     def decode(self, network: Network, design: Design) -> Design:
-        """Return *design* with the provided roles, as *network* draws them."""
+        """Return *design* with the provided roles added, computed from *network*."""
 
 
 @runtime_checkable
 class EvolverRun(Protocol):
-    """An evolver at work on one population.
+    """The evolution of one population.
 
-    Laws: ``restore(state())`` continues bit for bit; draws from its own random stream only.
+    Laws: ``restore(state())`` continues bit for bit; random numbers come only from its own stream.
     """
 
     def ask(self) -> Sequence[Any]:
-        """Return the genomes to evaluate: first the initial ones, later the offspring of those told about."""
+        """Return the genomes to evaluate: the initial ones, or after :meth:`tell` their offspring."""
 
     def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
-        """Take the *fitness* (``float64[n]``, finite, maximised) of the genomes of the last :meth:`ask`.
+        """Receive the *fitness* (``float64[n]``, finite, maximized) of the genomes of the last :meth:`ask`.
 
         Args:
-            fitness: One value a genome, in the order of :meth:`ask`.
+            fitness: One value per genome, in the order of :meth:`ask`.
             measures: Further measures by name, each ``float64[n]``, for evolvers with several objectives.
 
         Raises:
-            ValueError: A wrong number of values, or one that is not finite.
+            ValueError: The number of values is wrong, or a value is not finite.
         """
 
     def members(self) -> Sequence[Member]:
         """Return the current members, in the order of the last :meth:`ask`."""
 
     def genomes(self) -> Sequence[Any]:
-        """Return the genomes of the last :meth:`ask`, also after :meth:`restore`."""
+        """Return the genomes of the last :meth:`ask`, even after :meth:`restore`."""
 
     def express(self, genome: Any) -> Network:
         """Return the network that *genome* encodes."""
 
     def dump(self, genome: Any) -> Any:
-        """Return *genome* as JSON values, for the record."""
+        """Return *genome* as JSON values."""
 
     def state(self) -> Any:
         """Return everything needed to continue, as JSON values."""
@@ -150,7 +151,7 @@ class EvolverRun(Protocol):
 
 @runtime_checkable
 class Evolver(Protocol):
-    """Options of an evolutionary algorithm that works on networks.
+    """Options of an evolutionary algorithm for networks.
 
     It may offer :class:`~evoframe.SupportsGraph`.
     """
@@ -163,18 +164,18 @@ class Evolver(Protocol):
         """
 
     def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> EvolverRun:
-        """Begin to evolve *size* genomes that express networks with *inputs* and *outputs*."""
+        """Start the evolution of *size* genomes of networks with these numbers of *inputs* and *outputs*."""
 
 
 @runtime_checkable
 class Simulator(Protocol):
     """Simulates designs.
 
-    Laws: a batch equals its members one by one, bit for bit; any number of threads may call at
-    once; recording more changes nothing; equal keys mean equal outcomes; a diverged simulation says so and at
-    which step.
+    Laws: a batch gives the same outcomes as its members one by one, bit for bit; any number of threads may
+    call it at the same time; recording more does not change the outcome; equal keys imply equal outcomes; the
+    outcome of a diverged simulation states the step of divergence.
 
-    It may offer more, each on its own: :class:`~evoframe.SupportsReading`,
+    It may offer any of :class:`~evoframe.SupportsReading`,
     :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsExport`,
     :class:`~evoframe.SupportsVariants`, :class:`~evoframe.SupportsGeometry`,
     :class:`~evoframe.SupportsRandomControllers` and :class:`~evoframe.SupportsPublished`.
@@ -186,32 +187,35 @@ class Simulator(Protocol):
 
     @property
     def tracks(self) -> tuple[str, ...]:
-        """Names of the points that it can follow; it may accept, and document, tracks of other shapes."""
+        """Names of the points that it can track; it may accept, and document, tracks of other shapes."""
 
     def check(self, record: Record) -> None:
-        """Refuse a *record* that cannot be delivered.
+        """Refuse a *record* that the simulation cannot provide.
 
         Raises:
-            ConfigurationError: An unknown track, a sample after the end, or an end before ``record.until``.
+            ConfigurationError: A track is unknown, a sample is after the end, or the end is before
+                ``record.until``.
         """
 
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
         """Return the outcome of each of *designs*."""
 
     def key(self, design: Design, record: Record) -> bytes:
-        """Return a key that leaves out what cannot matter to the outcome."""
+        """Return a key that identifies the outcome, independent of irrelevant parts of *design*."""
 
 
 @runtime_checkable
 class Objective(Protocol):
-    """Turns the outcome of a simulation into a score, which is maximised.
+    """Computes the score of a simulation's outcome; scores are maximized.
 
-    Law: finite for every outcome that did not diverge. It may offer :class:`~evoframe.SupportsUnit`.
+    Law: the score is finite for every outcome that did not diverge.
+
+    It may offer :class:`~evoframe.SupportsUnit`.
     """
 
     @property
     def record(self) -> Record:
-        """What must be recorded for :meth:`score`."""
+        """Samples that :meth:`score` requires."""
 
     def score(self, outcome: Outcome) -> float:
         """Return the score of an *outcome* that did not diverge."""
@@ -221,28 +225,28 @@ class Objective(Protocol):
 class ExecutorRun(Protocol):
     """Workers that are ready.
 
-    Laws: results come in the order of the items, whatever the number of workers; items are asked for where
-    :meth:`map` is called, once, and may be made while others are worked on.
+    Laws: results are in the order of the items, whatever the number of workers; the iterable is consumed
+    once, in the thread that calls :meth:`map`, possibly while earlier items are processed.
     """
 
     @property
     def workers(self) -> int:
-        """How many items are worked on at once."""
+        """Number of items processed in parallel."""
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
-        """Return ``[function(item) for item in items]``; an exception of either is raised here.
+        """Return ``[function(item) for item in items]``; exceptions of both are raised here.
 
         Raises:
             WorkerError: The worker of an item was lost: it hung, or its process ended.
         """
 
     def close(self) -> None:
-        """Let the workers go."""
+        """Shut down the workers."""
 
 
 @runtime_checkable
 class Executor(Protocol):
-    """Options of a way to spread simulations over workers."""
+    """Options of an executor, which distributes simulations over workers."""
 
     def start(self) -> ExecutorRun:
-        """Make the workers ready."""
+        """Start the workers."""

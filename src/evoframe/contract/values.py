@@ -1,4 +1,4 @@
-"""Small frozen values that travel between the core and the plugins."""
+"""Small frozen values that the core and the plugins exchange."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Scores: TypeAlias = NDArray[np.float64]
 
 
 def _frozen_roles(roles: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Copy what others could still write to, so that a design never changes under a cache."""
+    """Copy writable arrays, so that a design in a cache never changes."""
     frozen = {}
     for role, given in roles.items():
         array = np.asarray(given)
@@ -42,7 +42,7 @@ def _frozen_roles(roles: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 
 @attrs.frozen(eq=False)
 class Design:
-    """What is simulated: one array for every role, such as ``morphology`` and ``controller``.
+    """A design to simulate: one array for each role, such as ``morphology`` and ``controller``.
 
     Attributes:
         roles: Role -> array, read-only. The built-in roles are ``morphology`` (``uint8[X, Y, Z]``: 0 empty,
@@ -52,25 +52,25 @@ class Design:
     roles: Mapping[str, NDArray[Any]] = attrs.field(factory=dict, converter=_frozen_roles)
 
     def with_role(self, role: str, array: NDArray[Any]) -> Design:
-        """Return the design that has *array* as its *role* too."""
+        """Return a copy with *array* stored under *role*."""
         return Design({**self.roles, role: array})
 
 
 @attrs.frozen
 class Record:
-    """What a simulator is asked to keep of a simulation.
+    """The samples that a simulator records.
 
     Samples follow the rule of the paper's engine: sample 0 is taken after the first step, each further one
     after the first step that ends at least *every* seconds after the sample before it.
 
     Attributes:
-        tracks: Names of what to follow. Each of the points in a simulator's ``tracks`` gives
-            ``float64[samples, 3]`` in metres; other tracks that it accepts have the shapes that it documents.
-        every: Seconds between samples; 0 samples after every step.
-        samples: The indices of the samples to keep, ascending; ``None`` keeps all of them.
-        initial: Whether the state before the first step is kept too, as a row of its own in front.
-        until: Seconds that the simulation must reach: a simulator refuses a record whose last sample would
-            come before. It changes nothing else.
+        tracks: Names of the tracks. Each point in a simulator's ``tracks`` gives ``float64[samples, 3]`` in
+            meters; other tracks that it accepts have the shapes that it documents.
+        every: Time between samples, s; 0 samples after every step.
+        samples: Indices of the samples to keep, ascending; ``None`` keeps all.
+        initial: Whether the state before the first step is recorded as an additional first row.
+        until: Time that the simulation must reach, s: a simulator refuses a record whose last sample would be
+            earlier. Nothing else depends on it.
     """
 
     tracks: tuple[str, ...]
@@ -82,15 +82,15 @@ class Record:
 
 @attrs.frozen(eq=False)
 class Outcome:
-    """What came out of one simulation.
+    """The outcome of one simulation.
 
     Attributes:
-        steps: ``int64[samples]``, how many steps had been made at each sample.
-        times: ``float64[samples]``, the simulated time of each sample, s.
-        tracks: Name -> ``float64[samples, 3]``, positions in metres, or what the simulator documents of a
-            track that is no point; NaN from the divergence on.
-        diverged_at: The step at which the simulation diverged, or ``None``. What could not even begin has
-            diverged at step 0, and may have no samples.
+        steps: ``int64[samples]``, number of completed steps at each sample.
+        times: ``float64[samples]``, simulated time of each sample, s.
+        tracks: Name -> ``float64[samples, 3]``, positions in meters, or the shape that the simulator
+            documents if the track is not a point; NaN from the divergence on.
+        diverged_at: Step at which the simulation diverged, or ``None``. A simulation that cannot start
+            diverges at step 0, and may have no samples.
     """
 
     steps: NDArray[np.int64]
@@ -101,11 +101,11 @@ class Outcome:
 
 @attrs.frozen
 class Export:
-    """A design with its settings, as a file that other programs read.
+    """A design with its settings, as a file for other programs.
 
     Attributes:
         data: The bytes of the file.
-        left_out: What the format cannot say, one entry for each setting, in words, such as
+        left_out: Descriptions of the settings that the format cannot express, such as
             ``fluid drag (750 kg/m3)``.
     """
 
@@ -115,14 +115,14 @@ class Export:
 
 @attrs.frozen
 class Member:
-    """What a collaboration strategy and the record see of an individual.
+    """An individual, as collaboration strategies and the record see it.
 
     Attributes:
-        id: Identifies the genome within its population, for the whole run.
-        fitness: Its latest fitness; ``None`` before the first evaluation.
-        species: The species it belongs to, ``None`` where an evolver has none.
+        id: Identifier of the genome within its population, for the whole run.
+        fitness: Latest fitness; ``None`` before the first evaluation.
+        species: Species of the individual; ``None`` if the evolver has no species.
         genome_size: Number of genes (nodes and enabled connections of a network).
-        age: Turns of its population since the genome came into being.
+        age: Turns of its population since the genome was created.
         diverged: Whether one of the simulations behind its fitness diverged.
     """
 
@@ -136,11 +136,11 @@ class Member:
 
 @attrs.frozen
 class Score:
-    """What a design scored.
+    """The score of a design.
 
     Attributes:
-        value: In the objective's unit; ``None`` if the simulation diverged.
-        diverged_at: The step at which it diverged, or ``None``.
+        value: The score, in the objective's unit; ``None`` if the simulation diverged.
+        diverged_at: Step at which the simulation diverged, or ``None``.
     """
 
     value: float | None
@@ -149,12 +149,12 @@ class Score:
 
 @attrs.frozen
 class Pair:
-    """One encounter of the members of all populations, and its score.
+    """One member of each population, simulated together, and their score.
 
     Attributes:
         genomes: One genome id for each population, in the order of the populations.
-        score: The objective's score, ``None`` if the simulation diverged.
-        diverged_at: The step at which it diverged, or ``None``.
+        score: The objective's score; ``None`` if the simulation diverged.
+        diverged_at: Step at which the simulation diverged, or ``None``.
     """
 
     genomes: tuple[int, ...]
@@ -164,13 +164,13 @@ class Pair:
 
 @attrs.frozen(eq=False)
 class BestPair:
-    """The best pair that was really simulated so far.
+    """The best simulated pair so far.
 
     Attributes:
-        turn: The turn in which it was simulated.
-        score: Its score, in the objective's unit.
+        turn: Turn in which the pair was simulated.
+        score: Score of the pair, in the objective's unit.
         genome_ids: Population -> id of its genome.
-        genomes: Population -> its genome as JSON (see :meth:`EvolverRun.dump`).
+        genomes: Population -> its genome as JSON values (see :meth:`EvolverRun.dump`).
         design: The decoded design.
     """
 
@@ -183,17 +183,17 @@ class BestPair:
 
 @attrs.frozen
 class PopulationReport:
-    """The state of a population after it was evaluated.
+    """The state of a population after its evaluation.
 
     Attributes:
-        population: Its name (the role that it evolves).
-        generation: How often it has reproduced.
-        members: All its members, with the fitness of this turn.
-        best: The best fitness of this turn.
-        best_so_far: The best fitness of this turn and all before it.
-        standing_champion: Fitness of the standing champion at its latest evaluation (it falls when the
-            champion meets new collaborators, and stands still when it has left the population).
-        mean: The mean fitness of this turn.
+        population: Name of the population (the role that it evolves).
+        generation: Number of generations since the initial one.
+        members: All members, with the fitness of this turn.
+        best: Best fitness of this turn.
+        best_so_far: Best fitness of this turn and all earlier turns.
+        standing_champion: Fitness of the standing champion at its latest evaluation. It can fall when the
+            champion meets new collaborators, and stays constant after the champion has left the population.
+        mean: Mean fitness of this turn.
     """
 
     population: str
@@ -207,11 +207,11 @@ class PopulationReport:
 
 @attrs.frozen
 class Workload:
-    """How a turn's work was done; differs between equal runs, so it is no part of their result.
+    """The workload of a turn, which may differ between equal runs and is not part of their result.
 
     Attributes:
-        pairs: Pairs that were scored.
-        simulations: Pairs that had to be simulated; the others were served from the cache.
+        pairs: Number of scored pairs.
+        simulations: Number of simulated pairs; the scores of the others came from the cache.
         seconds: Wall-clock time of the turn.
     """
 
@@ -222,15 +222,15 @@ class Workload:
 
 @attrs.frozen
 class Turn:
-    """What happened in one turn.
+    """One turn of a run.
 
     Attributes:
-        index: 0 for the initial meeting of everyone with everyone, then 1, 2, ...
-        reports: One for each population that was judged: all of them in turn 0, later one; none in the
-            closing meeting of the fittest, where there is one.
-        pairs: Every pair that was scored, in the order of evaluation.
-        best_pair: The best pair so far, if this turn found it.
-        workload: What the turn cost.
+        index: 0 for the initial turn, in which every individual meets every other, then 1, 2, ...
+        reports: One for each evaluated population: all in turn 0, then one per turn; none in the final turn
+            that pairs the fittest, if there is one.
+        pairs: All scored pairs, in the order of evaluation.
+        best_pair: The best pair so far, if it was found in this turn.
+        workload: Pairs, simulations and time of the turn.
     """
 
     index: int

@@ -1,6 +1,16 @@
-"""Trees of values from TOML and JSON: structuring and comparing them."""
+"""Trees of values from TOML and JSON: typed structuring and comparison."""
 
-from evoframe.documents.structuring import Fault, StructureError, structure, unstructure
+from evoframe.documents.structuring import Fault, StructureError, option_names, structure, unstructure
 from evoframe.documents.trees import Tree, as_read, differences, leaves
 
-__all__ = ["Fault", "StructureError", "Tree", "as_read", "differences", "leaves", "structure", "unstructure"]
+__all__ = [
+    "Fault",
+    "StructureError",
+    "Tree",
+    "as_read",
+    "differences",
+    "leaves",
+    "option_names",
+    "structure",
+    "unstructure",
+]

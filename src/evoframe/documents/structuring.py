@@ -1,7 +1,8 @@
-"""TOML values into typed attrs classes, strictly, with every fault collected and put in a person's words."""
+"""Strict conversion of TOML values into typed attrs classes; all faults are reported together."""
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import numbers
@@ -22,7 +23,7 @@ from cattrs.gen import make_dict_structure_fn, override
 
 from evoframe.messages import found, suggestion
 
-__all__ = ["Fault", "StructureError", "structure", "unstructure"]
+__all__ = ["Fault", "StructureError", "option_names", "structure", "unstructure"]
 
 T = TypeVar("T")
 Path = tuple[str, ...]
@@ -30,24 +31,26 @@ Path = tuple[str, ...]
 
 @attrs.frozen
 class Fault:
-    """One thing wrong with a configuration.
+    """A fault in a configuration.
 
     Attributes:
-        path: The keys that lead to it; an index is part of its key, as in ``weights[1]``.
-        message: What was found, what was expected, what to do.
-        involves: Another key that has its part in it, if there is one.
+        path: Keys that lead to the value; an index is part of its key, as in ``weights[1]``.
+        message: Value found, value expected, and the remedy.
+        involves: Another key that contributes to the fault, if any.
+        options: Valid options, if the last key of *path* is unknown; otherwise ``None``.
     """
 
     path: Path
     message: str
     involves: Path = ()
+    options: tuple[str, ...] | None = None
 
 
 class StructureError(ValueError):
-    """Values that do not fit their type.
+    """Values that do not match their type.
 
     Attributes:
-        faults: All that is wrong, in order.
+        faults: All faults, in order.
     """
 
     def __init__(self, faults: list[Fault]) -> None:
@@ -59,7 +62,7 @@ def structure(value: Any, target: type[T], path: Path) -> T:
     """Return *value* as an instance of *target*.
 
     Raises:
-        StructureError: With all faults, their paths beginning with *path*.
+        StructureError: The value is invalid; contains all faults, their paths beginning with *path*.
     """
     try:
         return _converter().structure(value, target)
@@ -68,8 +71,19 @@ def structure(value: Any, target: type[T], path: Path) -> T:
         raise StructureError(faults) from error
 
 
+def option_names(class_: type[Any]) -> Iterator[str]:
+    """Yield the dotted names of the options of an attrs class, those of nested classes included."""
+    with contextlib.suppress(NameError):  # an annotation that only a type checker can resolve
+        attrs.resolve_types(class_)
+    for field in attrs.fields(class_):
+        if field.init:
+            yield field.name
+            if isinstance(field.type, type) and attrs.has(field.type):
+                yield from (f"{field.name}.{inner}" for inner in option_names(field.type))
+
+
 def unstructure(instance: Any) -> Any:
-    """Return *instance* as TOML values; options that are ``None`` are left out, as TOML has no such value."""
+    """Return *instance* as TOML values, without options that are ``None``, which TOML cannot express."""
     return _without_none(_converter().unstructure(instance))
 
 
@@ -136,7 +150,7 @@ def _literal(value: Any, target: Any) -> Any:
 
 
 def _table(value: Any, _: Any) -> dict[str, Any]:
-    """Return a table of anything: what its values must be is for others to say."""
+    """Return a table; its values are not checked."""
     if not isinstance(value, Mapping):
         raise TypeError(f"expected a table, found {found(value)}")
     return dict(value)
@@ -167,7 +181,7 @@ def _tuple(converter: Converter, value: Any, target: Any) -> tuple[Any, ...]:
 def _class_hook(converter: Converter, class_: type[Any]) -> Callable[[Any, Any], Any]:
     """Structure a table into *class_*, running each field's validator beside the type checks.
 
-    attrs alone would stop at the first validator that fails; here every fault of a table is reported.
+    attrs alone stops at the first validator that fails; here every fault of a table is reported.
     """
     overrides = {
         field.name: override(struct_hook=functools.partial(_field, converter, field))
@@ -193,7 +207,7 @@ def _class_hook(converter: Converter, class_: type[Any]) -> Callable[[Any, Any],
 def _field(converter: Converter, field: attrs.Attribute[Any], value: Any, _: Any) -> Any:
     structured = converter.structure(value, field.type)  # type: ignore[arg-type]
     if field.validator is not None:
-        # A validator that looks at other fields finds none yet: it has its turn at construction.
+        # A validator that compares fields fails here, without an instance; it runs at construction.
         try:
             field.validator(None, field, structured)
         except AttributeError:
@@ -216,23 +230,23 @@ def _faults(error: BaseException, path: Path) -> Iterator[Fault]:
             yield from _faults(inner, path)
     elif isinstance(error, ForbiddenExtraKeysError):
         for key in sorted(error.extra_fields):
-            yield Fault((*path, key), _unknown_key(key, error.cl))
-    elif isinstance(error, KeyError):  # whose key may end the path already
+            yield _unknown_option((*path, key), error.cl)
+    elif isinstance(error, KeyError):  # its key may already end the path
         key = str(error.args[0])
         yield Fault(path if path[-1:] == (key,) else (*path, key), "is missing")
     else:
         yield Fault(path, _plain(str(error)))
 
 
-def _unknown_key(key: str, class_: type[Any]) -> str:
-    options = [field.name for field in attrs.fields(class_) if field.init]
-    return f"unknown option{suggestion(key, options, 'options')}"
+def _unknown_option(path: Path, class_: type[Any]) -> Fault:
+    options = tuple(field.name for field in attrs.fields(class_) if field.init)
+    return Fault(path, f"unknown option{suggestion(path[-1], options, 'options')}", options=options)
 
 
 _VALIDATOR = re.compile(r"'\w+' (must .*): (.*)", re.DOTALL)
 
 
 def _plain(message: str) -> str:
-    """Turn the words of attrs' validators (``'n' must be >= 1: 0``) into those of all other messages."""
+    """Rewrite messages of attrs' validators (``'n' must be >= 1: 0``) in the form of all other messages."""
     match = _VALIDATOR.fullmatch(message)
     return f"{match[1]}, found {match[2]}" if match else message

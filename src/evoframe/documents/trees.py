@@ -1,4 +1,4 @@
-"""Trees of tables, as TOML and JSON have them: their leaves, and how two of them differ."""
+"""Trees of tables, as in TOML and JSON: their leaves, and the differences of two trees."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Tree: TypeAlias = dict[str, Any]
 
 
 def as_read(tables: Mapping[str, Any]) -> Tree:
-    """Return tables as they are read back from a file: tuples are lists."""
+    """Return tables in the form that reading a file gives: lists instead of tuples."""
     read: Tree = json.loads(json.dumps(tables))
     return read
 
@@ -21,12 +21,12 @@ def as_read(tables: Mapping[str, Any]) -> Tree:
 def differences(
     then: Mapping[str, Any], now: Mapping[str, Any], words: tuple[str, str] = ("then", "now")
 ) -> list[str]:
-    """Return a line for each value of two trees of tables that is not the same: its dotted key, then, now.
+    """Return a line for each value that differs between two trees: its dotted key and both values.
 
     Args:
-        then: One tree.
-        now: The other.
-        words: What the lines call them.
+        then: The first tree.
+        now: The second tree.
+        words: Names of the two trees in the lines.
     """
     before, after = dict(_leaves(then, ())), dict(_leaves(now, ()))
     keys = [*before, *(key for key in after if key not in before)]
@@ -43,7 +43,7 @@ def leaves(tree: Any) -> Iterator[tuple[str, Any]]:
 
 
 class _Nothing:
-    """Stands for a value that is not there, and equals none that is."""
+    """Placeholder for a missing value; unequal to every value."""
 
     def __repr__(self) -> str:
         return "'nothing'"

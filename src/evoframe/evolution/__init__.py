@@ -1,4 +1,4 @@
-"""The coevolution engine: populations, the loop, and the evaluation of designs. No files, no terminal."""
+"""The coevolution engine: populations, the loop, and the evaluation of designs; no input or output."""
 
 from evoframe.evolution.assembly import assemble, evaluator_of
 from evoframe.evolution.coevolution import Coevolution, first_meetings

@@ -37,7 +37,7 @@ def assemble(config: RunConfig) -> Coevolution:
 
 
 def evaluator_of(config: RunConfig) -> Evaluator:
-    """Return what scores designs as a configuration says, its workers ready."""
+    """Return the evaluator that a configuration describes, with its workers started."""
     return Evaluator(
         config.simulator.component, config.objective.component, config.executor.component.start()
     )

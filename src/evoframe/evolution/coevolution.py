@@ -1,4 +1,4 @@
-"""The loop of cooperative coevolution: populations take turns, each judged by its partners in the others."""
+"""The loop of cooperative coevolution: populations take turns and are evaluated with collaborators."""
 
 from __future__ import annotations
 
@@ -35,30 +35,31 @@ from evoframe.evolution.population import Population
 __all__ = ["Coevolution", "first_meetings"]
 
 Meeting: TypeAlias = tuple[int, ...]
-"""One position in each population."""
+"""One position in each population: the members of a pair."""
 
 Fold: TypeAlias = Callable[[Scores], float]
 
 
 @attrs.define
 class Coevolution:
-    """Iterate over it to run it; it touches neither files nor the terminal.
+    """The loop of a run: iterating over it runs it, without input or output.
 
-    First everyone meets everyone and gets the arithmetic mean of its scores. Then, turn by turn, one
-    population reproduces and all its members are judged with collaborators from the others, whose fitness
-    stays as it was (paper.md, "The loop"). If the fittest of all populations have not met in the last turn,
-    they do so in one more, which judges nobody.
+    In the initial turn, every individual is paired with every individual of the other populations; its
+    fitness is the arithmetic mean of its scores. In each following turn, one population reproduces and all
+    its members are evaluated with collaborators from the other populations, whose fitness does not change
+    (docs/experiment.md, "The loop"). If the fittest individuals of all populations were not paired in the
+    last turn, a final turn pairs them, without changing any fitness.
 
-    Collaborators from several other populations are combined position by position: the i-th of each.
+    Collaborators from several other populations are combined by position: the i-th of each.
 
     Attributes:
-        populations: In the order in which they take turns and are decoded; at least two.
+        populations: At least two, in the order of turns and of decoding.
         strategy: Chooses the collaborators.
-        aggregator: Folds the scores of an individual into its fitness.
+        aggregator: Aggregates the scores of an individual into its fitness.
         evaluator: Scores designs.
-        generations: How often each population reproduces.
-        turn: The latest turn; -1 before the first.
-        best_score: The best score of a pair so far.
+        generations: Generations per population.
+        turn: Index of the latest turn; -1 before the first.
+        best_score: Best score of a pair so far.
     """
 
     populations: tuple[Population, ...]
@@ -72,22 +73,22 @@ class Coevolution:
 
     @property
     def length(self) -> int:
-        """Number of turns after the initial meeting in which a population reproduces."""
+        """Number of turns in which a population reproduces."""
         return self.generations * len(self.populations)
 
     @property
     def finished(self) -> bool:
-        """Whether there is nothing left to do."""
+        """Whether all turns are complete."""
         return self.turn >= self.length and self._fittest_have_met
 
     def __iter__(self) -> Iterator[Turn]:
-        """Let everyone meet everyone, then let the populations take turns."""
+        """Yield the initial turn, then the turns of the populations, then the final turn if required."""
         if self.turn < 0:
-            yield self._initial_cross()
+            yield self._initial_turn()
         while self.turn < self.length:
             yield self._take_turn(self.turn % len(self.populations))
         if not self._fittest_have_met:
-            yield self._play([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
+            yield self._complete_turn([self._fittest()], [], self.aggregator.aggregate, time.perf_counter())
 
     def __enter__(self) -> Self:
         return self
@@ -96,7 +97,7 @@ class Coevolution:
         self.close()
 
     def fittest_pair(self) -> Pair:
-        """Return the fittest of each population as a pair; after the last turn, they have met."""
+        """Return the fittest of each population as a pair; after the last turn, its score is known."""
         meeting = self._fittest()
         return self._pair(meeting, self._scores([meeting])[meeting])
 
@@ -104,19 +105,19 @@ class Coevolution:
         """Return everything needed to continue after the latest turn, as JSON values.
 
         Args:
-            changed: The populations whose state is wanted; by default all.
+            changed: Names of the populations to include; by default all.
         """
         loop = attrs.asdict(_Loop(self.turn, self.best_score, self._fittest_have_met))
         wanted = [p for p in self.populations if changed is None or p.name in changed]
         return {"loop": loop, **{f"population/{p.name}": p.state() for p in wanted}}
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Continue from what :meth:`state` returned, bit for bit as if never interrupted.
+        """Continue from the result of :meth:`state`, bit for bit as without an interruption.
 
         Raises:
-            KeyError: A part is missing.
-            StructureError: A part is no such state; says where.
-            ValueError: An evolver or a random stream says so.
+            KeyError: A part of the state is missing.
+            StructureError: A part of the state is invalid; names its keys.
+            ValueError: An evolver or a random stream rejects its state.
         """
         loop = structure(state["loop"], _Loop, ("loop",))
         self.turn, self.best_score = loop.turn, loop.best_score
@@ -125,28 +126,28 @@ class Coevolution:
             population.restore(state[f"population/{population.name}"])
 
     def close(self) -> None:
-        """Let the workers go."""
+        """Shut down the workers."""
         self.evaluator.close()
 
-    def _initial_cross(self) -> Turn:
+    def _initial_turn(self) -> Turn:
         started = time.perf_counter()
         for population in self.populations:
             population.reproduce()
         met = first_meetings([len(population.genomes) for population in self.populations])
-        return self._play(met, range(len(self.populations)), statistics.fmean, started)
+        return self._complete_turn(met, range(len(self.populations)), statistics.fmean, started)
 
     def _take_turn(self, index: int) -> Turn:
         started = time.perf_counter()
         self.populations[index].reproduce()
         teams = list(zip(*self._chosen(index), strict=True))
         met = _meetings(index, len(self.populations[index].genomes), teams)
-        return self._play(met, [index], self.aggregator.aggregate, started)
+        return self._complete_turn(met, [index], self.aggregator.aggregate, started)
 
     def _chosen(self, index: int) -> list[list[int]]:
-        """Return the positions of the collaborators from each population but one.
+        """Return the positions of the collaborators from each population except one.
 
         Raises:
-            RunError: The strategy chose what is not there, the same twice, or not as many as it declared.
+            RunError: The strategy chose invalid or repeated positions, or another number than declared.
         """
         chosen = []
         for other in (other for i, other in enumerate(self.populations) if i != index):
@@ -157,7 +158,7 @@ class Coevolution:
             if not _are_positions(selected, size, len(other.members)):
                 raise ComponentError(
                     "collaboration",
-                    f"chose {selected.tolist()}, not {size} of the {len(other.members)} members of "
+                    f"chose {selected.tolist()}, expected {size} of the {len(other.members)} members of "
                     f"'{other.name}'",
                 )
             chosen.append(selected.tolist())
@@ -166,8 +167,10 @@ class Coevolution:
     def _fittest(self) -> Meeting:
         return tuple(population.fittest() for population in self.populations)
 
-    def _play(self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float) -> Turn:
-        """Score all *meetings* of a turn, which differ, and let them judge some of the populations."""
+    def _complete_turn(
+        self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float
+    ) -> Turn:
+        """Score all *meetings* of a turn, which are unique, and evaluate the *judged* populations."""
         simulated = self.evaluator.simulations
         scores = self._scores(meetings)
         for index in judged:
@@ -187,7 +190,7 @@ class Coevolution:
         )
 
     def _judge(self, index: int, scores: Mapping[Meeting, Score], fold: Fold) -> None:
-        """Give every member of a population the fold of the scores of all its meetings."""
+        """Set the fitness of each member of a population to the *fold* of the scores of its meetings."""
         population = self.populations[index]
         rows: list[list[float | None]] = [[] for _ in population.genomes]
         for meeting, score in scores.items():
@@ -197,15 +200,15 @@ class Coevolution:
         population.judge(fitness, floor)
 
     def _scores(self, meetings: Collection[Meeting]) -> dict[Meeting, Score]:
-        """Score different meetings; those that share their first members are simulated side by side."""
+        """Score unique meetings, sorted so that designs with common first members share a batch."""
         together = sorted(meetings)
-        with self._saying_who(together):
+        with self._naming_individuals(together):
             scores = self.evaluator.evaluate(self._designs(together), len(together))
         by_meeting = dict(zip(together, scores, strict=True))
         return {meeting: by_meeting[meeting] for meeting in meetings}
 
     def _designs(self, meetings: Iterable[Meeting]) -> Iterator[Design]:
-        """Decode different meetings; what the first members of several share is decoded once."""
+        """Decode unique meetings; the common part of those with the same first members is decoded once."""
         decoded: dict[Meeting, Design] = {(): Design()}
         for meeting in meetings:
             for length, population in enumerate(self.populations, start=1):
@@ -215,8 +218,8 @@ class Coevolution:
             yield decoded.pop(meeting)
 
     @contextlib.contextmanager
-    def _saying_who(self, meetings: Sequence[Meeting]) -> Iterator[None]:
-        """Say whose designs an error is about that knows only their places among those of *meetings*."""
+    def _naming_individuals(self, meetings: Sequence[Meeting]) -> Iterator[None]:
+        """Add the individuals to an error that has only the places of their designs among *meetings*."""
         try:
             yield
         except ComponentError as error:
@@ -234,7 +237,7 @@ class Coevolution:
         return Pair(ids, score.value, score.diverged_at)
 
     def _best_pair(self, scores: Mapping[Meeting, Score]) -> BestPair | None:
-        """Return the best pair of this turn if it is better than all before; ties go to the earliest."""
+        """Return the best pair of this turn if it exceeds all earlier ones; the earliest wins ties."""
         best: Meeting | None = None
         for meeting, score in scores.items():
             if score.value is not None and (self.best_score is None or score.value > self.best_score):
@@ -253,31 +256,31 @@ class Coevolution:
 
 
 def first_meetings(sizes: Sequence[int]) -> list[Meeting]:
-    """Return the meetings in which everyone meets everyone, each of them once.
+    """Return the meetings of the initial turn, without repeats.
 
     Args:
-        sizes: Of the populations, in the order in which they take turns.
+        sizes: Sizes of the populations, in the order of turns.
     """
     met: dict[Meeting, None] = {}
     for index, size in enumerate(sizes):
-        met.update(dict.fromkeys(_meetings(index, size, _everyone_else(index, sizes))))
+        met.update(dict.fromkeys(_meetings(index, size, _teams_of_others(index, sizes))))
     return list(met)
 
 
-def _everyone_else(index: int, sizes: Sequence[int]) -> list[Meeting]:
-    """Return teams of which every member of every other population is part; small populations recur."""
+def _teams_of_others(index: int, sizes: Sequence[int]) -> list[Meeting]:
+    """Return teams that include every member of the other populations; members of small ones recur."""
     others = [size for i, size in enumerate(sizes) if i != index]
     return [tuple(position % size for size in others) for position in range(max(others))]
 
 
 def _meetings(index: int, size: int, teams: Sequence[tuple[int, ...]]) -> list[Meeting]:
-    """Return the meetings of each member of a population with each of the *teams* from the others."""
+    """Return the meetings of each member of a population with each team from the others."""
     return [(*team[:index], member, *team[index:]) for member in range(size) for team in teams]
 
 
 @attrs.frozen
 class _Loop:
-    """The part of the state that belongs to no population."""
+    """The part of the state that is independent of the populations."""
 
     turn: int = attrs.field(validator=ge(-1))
     best_score: float | None
@@ -285,20 +288,20 @@ class _Loop:
 
 
 def _fitness(row: Sequence[float | None], fold: Fold, individual: str) -> float | None:
-    """Return the fold of the scores of an individual, or ``None`` if one of its simulations diverged."""
+    """Return the fitness of an individual, or ``None`` if one of its simulations diverged."""
     values = [value for value in row if value is not None]
     if len(values) < len(row):
         return None
     with blaming("aggregator", individual):
         fitness = fold(np.array(values, dtype=np.float64))
     if not isinstance(fitness, numbers.Real) or not math.isfinite(fitness):
-        problem = f"gave the fitness {fitness!r} for the scores {values}"
+        problem = f"returned the fitness {fitness!r} for the scores {values}"
         raise ComponentError("aggregator", problem, individual)
     return float(fitness)
 
 
 def _are_positions(chosen: NDArray[Any], size: int, members: int) -> bool:
-    """Return whether these are so many different positions among so many members."""
+    """Return whether *chosen* contains *size* unique positions among *members*."""
     return (
         chosen.shape == (size,)
         and np.issubdtype(chosen.dtype, np.integer)

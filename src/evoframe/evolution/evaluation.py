@@ -1,4 +1,4 @@
-"""Designs in, scores out: what was simulated before is not simulated again."""
+"""Evaluation of designs: simulation, scoring, and a cache of scores."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from evoframe.errors import ComponentError, WorkerError
 
 __all__ = ["Evaluator", "score_designs"]
 
-_LARGEST_BATCH = 4  # as many share the cost of a call, and what the solver prepares for their common body
-_BATCHES_PER_WORKER = 2  # of what is left: the last ones are small, so that all workers end together
+_LARGEST_BATCH = 4  # these share the overhead of a call and the preparation of a common body
+_BATCHES_PER_WORKER = 2  # batches shrink towards the end, so that all workers finish together
 
 
 @attrs.define
@@ -24,10 +24,10 @@ class Evaluator:
     """Scores designs with a simulator and an objective.
 
     Attributes:
-        simulator: Simulates what is new.
-        objective: Says what to record, and scores it.
-        workers: Work on batches at the same time.
-        simulations: How many designs were simulated so far.
+        simulator: Simulates new designs.
+        objective: Defines the samples to record, and scores outcomes.
+        workers: Process batches in parallel.
+        simulations: Number of designs simulated so far.
     """
 
     simulator: Simulator
@@ -37,17 +37,17 @@ class Evaluator:
     _cache: dict[bytes, Score] = attrs.field(factory=dict, init=False, repr=False)
 
     def evaluate(self, designs: Iterable[Design], count: int) -> list[Score]:
-        """Return the score of each design; equal designs, now or earlier, are simulated once.
+        """Return the score of each design; equal designs are simulated once, across all calls.
 
         Args:
-            designs: Are asked for one after the other, while those before are simulated.
-            count: How many there are.
+            designs: Designs, consumed one by one while earlier ones are simulated.
+            count: Number of designs.
 
         Raises:
-            ComponentError: A component failed, or returned what it must not.
+            ComponentError: A component failed or returned an invalid result.
         """
         keys: list[bytes] = []
-        with blaming("executor"), _finding_places(keys):
+        with blaming("executor"), _locating_designs(keys):
             simulation = _Simulation(self.simulator, self.objective)
             for scores in self.workers.map(simulation, self._batches(designs, count, keys)):
                 self._cache |= scores
@@ -57,13 +57,13 @@ class Evaluator:
         return [self._cache[key] for key in keys]
 
     def close(self) -> None:
-        """Let the workers go."""
+        """Shut down the workers."""
         self.workers.close()
 
     def _batches(
         self, designs: Iterable[Design], count: int, keys: list[bytes]
     ) -> Iterator[dict[bytes, Design]]:
-        """Yield what has to be simulated, in batches, and note the key of every design in *keys*."""
+        """Yield batches of the designs to simulate; append the key of every design to *keys*."""
         record = self.objective.record
         known: set[bytes] = set()
         batch: dict[bytes, Design] = {}
@@ -85,13 +85,13 @@ class Evaluator:
         with blaming("simulator"):
             key = self.simulator.key(design, record)
         if not isinstance(key, bytes):
-            raise ComponentError("simulator", f"gave a key that is no bytes, but {type(key).__name__}")
+            raise ComponentError("simulator", f"returned a key of type {type(key).__name__}, expected bytes")
         return key
 
 
 @contextlib.contextmanager
-def _finding_places(keys: Sequence[bytes]) -> Iterator[None]:
-    """Say where the designs of a failed batch stand among all whose *keys* are given."""
+def _locating_designs(keys: Sequence[bytes]) -> Iterator[None]:
+    """Add to an error the places of the designs of the failed batch among *keys*."""
     try:
         yield
     except WorkerError as lost:
@@ -106,7 +106,7 @@ def _places(batch: Iterable[bytes], keys: Sequence[bytes]) -> tuple[int, ...]:
 
 @attrs.frozen
 class _Simulation:
-    """What a worker does with a batch, and no more, since it may travel to another process."""
+    """The processing of a batch in a worker; small, since it may be sent to another process."""
 
     simulator: Simulator
     objective: Objective
@@ -124,10 +124,10 @@ class _Simulation:
 def score_designs(
     simulator: Simulator, designs: Sequence[Design], record: Record, objective: Objective
 ) -> list[Score]:
-    """Simulate *designs* and return what *objective* gives for each, without looking for repeats.
+    """Simulate *designs* and return the score of each; repeated designs are simulated repeatedly.
 
     Raises:
-        ComponentError: Simulator or objective failed, or returned what they must not.
+        ComponentError: Simulator or objective failed or returned an invalid result.
     """
     with blaming("simulator"):
         outcomes = list(simulator.simulate(designs, record))
@@ -138,29 +138,33 @@ def score_designs(
 
 def _score(outcome: Outcome, record: Record, objective: Objective) -> Score:
     if not isinstance(outcome, Outcome):
-        raise ComponentError("simulator", f"returned no Outcome, but {type(outcome).__name__}")
+        raise ComponentError("simulator", f"returned {type(outcome).__name__}, expected Outcome")
     if outcome.diverged_at is not None:
         if not isinstance(outcome.diverged_at, numbers.Integral):
-            raise ComponentError("simulator", f"says that it diverged at step {outcome.diverged_at!r}")
+            raise ComponentError(
+                "simulator", f"returned diverged_at={outcome.diverged_at!r}, expected an integer or None"
+            )
         return Score(None, int(outcome.diverged_at))
     _refuse_tracks(outcome, record)
     with blaming("objective"):
         score = objective.score(outcome)
     if not isinstance(score, numbers.Real) or not math.isfinite(score):
-        problem = f"gave the score {score!r} for a simulation that did not diverge"
+        problem = f"returned the score {score!r}, expected a finite number"
         raise ComponentError("objective", problem)
     return Score(float(score))
 
 
 def _refuse_tracks(outcome: Outcome, record: Record) -> None:
-    """Refuse tracks that are not what was asked for."""
+    """Refuse tracks that do not match the record."""
     for name in record.tracks:
         track = outcome.tracks.get(name)
         if not isinstance(track, np.ndarray):
-            raise ComponentError("simulator", f"returned no array for the track '{name}'")
+            raise ComponentError(
+                "simulator", f"returned {type(track).__name__} for the track '{name}', expected an array"
+            )
         if len(track) != len(outcome.steps):
-            counts = f"{len(track)} samples of the track '{name}' for {len(outcome.steps)} steps"
-            raise ComponentError("simulator", f"returned {counts}")
+            problem = f"returned {len(track)} samples of the track '{name}', expected {len(outcome.steps)}"
+            raise ComponentError("simulator", problem)
         if not np.isfinite(track).all():
-            problem = f"returned numbers that are not finite in the track '{name}', but had not diverged"
+            problem = f"returned values that are not finite in the track '{name}', without a divergence"
             raise ComponentError("simulator", problem)

@@ -1,4 +1,4 @@
-"""One population of a run: its genomes, their fitness, and its history in a few numbers."""
+"""One population of a run: its genomes, their fitness, and a summary of its history."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Population:
         name: The role.
         encoder: Decodes its networks.
         evolver: Evolves its genomes.
-        rng: The stream with which its collaborators are chosen.
-        generation: How often it has reproduced.
+        rng: Random stream for the choice of its collaborators.
+        generation: Number of generations since the initial one; -1 before that.
         genomes: The current genomes.
-        members: What is known of each of them.
+        members: The individuals, one for each genome.
     """
 
     name: str
@@ -47,14 +47,16 @@ class Population:
     _champion: Member | None = attrs.field(default=None, init=False)
 
     def reproduce(self) -> None:
-        """Replace the genomes by the next ones; at first, by the initial ones."""
+        """Replace the genomes with the next generation; first, with the initial one."""
         with blaming(self._evolver):
             genomes = self.evolver.ask()
             members = tuple(self._plain(member) for member in self.evolver.members())
             counts = len(genomes), len(members)
         if counts[0] < 1 or counts[0] != counts[1] or counts[0] != (len(self.genomes) or counts[0]):
             wanted = f", expected {len(self.genomes)} of each" if self.genomes else ""
-            raise ComponentError(self._evolver, f"gave {counts[0]} genomes and {counts[1]} members{wanted}")
+            raise ComponentError(
+                self._evolver, f"returned {counts[0]} genomes and {counts[1]} members{wanted}"
+            )
         self.genomes, self.members = genomes, members
         self.generation += 1
         self._networks.clear()
@@ -70,11 +72,11 @@ class Population:
         """Return the genome at *position* as JSON values."""
         with blaming(self._evolver, self.called(position)):
             genome = self.evolver.dump(self.genomes[position])
-            json.dumps(genome, allow_nan=False)  # what cannot be saved is said here, by whose it is
+            json.dumps(genome, allow_nan=False)  # fails here, so that the evolver is named
             return genome
 
     def decode(self, position: int, design: Design) -> Design:
-        """Return a design to which the genome at *position* has added what it provides.
+        """Return *design* with the roles that the genome at *position* provides.
 
         Raises:
             ComponentError: Evolver or encoder failed, or the design lacks a role that the encoder provides.
@@ -84,11 +86,13 @@ class Population:
             decoded = self.encoder.decode(network, design)
             lacking = [role for role in self.encoder.provides if role not in decoded.roles]
         if lacking:
-            raise ComponentError(self._encoder, f"left out the role '{lacking[0]}'", self.called(position))
+            raise ComponentError(
+                self._encoder, f"did not provide the role '{lacking[0]}'", self.called(position)
+            )
         return decoded
 
     def called(self, position: int) -> str:
-        """Return what a person calls the individual at *position*."""
+        """Return the name of the individual at *position*, as errors show it."""
         return f"{self.name} {self.members[position].id}"
 
     @property
@@ -100,45 +104,47 @@ class Population:
         return f"populations.{self.name}.encoder"
 
     def judge(self, fitness: Sequence[float | None], floor: float | None) -> None:
-        """Take the fitness of all genomes.
+        """Set the fitness of all genomes.
 
         Args:
-            fitness: One value a genome; ``None`` where a simulation diverged. Such a genome gets the lowest
-                fitness among the clean ones of this turn, or else the lowest that the population has had.
-            floor: What it gets if there has been no clean one at all: the lowest score of this turn.
+            fitness: One value per genome; ``None`` if a simulation diverged. Such a genome gets the lowest
+                fitness of the other genomes of this turn; if there are none, the lowest that the population
+                has had.
+            floor: Fitness of such a genome if there is no earlier fitness either: the lowest score of this
+                turn.
 
         Raises:
-            RunError: There is not even such a score.
+            RunError: All simulations diverged, so that there is no such score.
         """
         lowest = min((value for value in fitness if value is not None), default=self._lowest)
         if lowest is None:
             lowest = floor
         if lowest is None:
             raise RunError(
-                "every simulation of the initial meeting diverged, so there is nothing to compare; "
+                "all simulations of the initial turn diverged, so no fitness can be assigned; "
                 "check the simulator's options (time step, stiffness, density)"
             )
         self._lowest = lowest if self._lowest is None else min(lowest, self._lowest)
-        told = np.array([lowest if value is None else value for value in fitness])
+        complete = np.array([lowest if value is None else value for value in fitness])
         with blaming(self._evolver):
-            self.evolver.tell(told, {})
-        self._note_members(told, [value is None for value in fitness])
+            self.evolver.tell(complete, {})
+        self._note_members(complete, [value is None for value in fitness])
         self._note_champion()
 
     def fittest(self) -> int:
         """Return the position of the fittest member; a diverged one only if there is no other.
 
         Raises:
-            RunError: There are no members yet, or they were not judged.
+            RunError: The population has no members yet, or they have no fitness.
         """
         if not self.members:
             raise RunError(f"population '{self.name}' has no members before the first turn")
         return max(range(len(self.members)), key=lambda position: (_rank(self.members[position]), -position))
 
     def report(self) -> PopulationReport:
-        """Return what happened to this population in its latest turn; it must have been judged."""
+        """Return the report of the latest turn, in which the population must have been evaluated."""
         if self._champion is None or self._best_so_far is None:
-            raise RunError(f"population '{self.name}' was not judged yet")
+            raise RunError(f"population '{self.name}' has no fitness before its first evaluation")
         fitness = [_fitness(member) for member in self.members]
         return PopulationReport(
             population=self.name,
@@ -165,11 +171,11 @@ class Population:
         }
 
     def restore(self, state: Any) -> None:
-        """Continue from what :meth:`state` returned.
+        """Continue from the result of :meth:`state`.
 
         Raises:
-            StructureError: It is no such state; says where.
-            ValueError: The evolver or a random stream says so.
+            StructureError: The state is invalid; names the key.
+            ValueError: The evolver or the random stream rejects its state.
         """
         saved = structure(state, _Saved, (self.name,))
         self.evolver.restore(saved.evolver)
@@ -191,19 +197,19 @@ class Population:
             )
 
     def _plain(self, member: Member) -> Member:
-        """Return a member whose numbers are Python's, as the record wants them."""
+        """Return *member* with Python integers, which the record requires."""
         given = (member.id, member.genome_size, member.age)
         wrong = [value for value in given if not isinstance(value, numbers.Integral)]
         if not isinstance(member.species, numbers.Integral | None):
             wrong.append(member.species)
         if wrong:
-            raise ComponentError(self._evolver, f"gave a member with {wrong[0]!r} where an integer belongs")
+            raise ComponentError(self._evolver, f"returned a member with {wrong[0]!r}, expected an integer")
         key, size, age = map(int, given)
         species = None if member.species is None else int(member.species)
         return attrs.evolve(member, id=key, genome_size=size, age=age, species=species)
 
     def _note_champion(self) -> None:
-        """Let the fittest challenge the champion at the champion's latest fitness (as the authors do)."""
+        """Replace the champion if the fittest exceeds its latest fitness, as in the authors' code."""
         best = self.members[self.fittest()]
         if self._best_so_far is None or _fitness(best) > self._best_so_far:
             self._best_so_far = _fitness(best)
@@ -216,7 +222,7 @@ class Population:
 
 @attrs.frozen
 class _Saved:
-    """What :meth:`Population.state` returns, as it is read again."""
+    """The form of the result of :meth:`Population.state`."""
 
     evolver: Any
     rng: dict[str, Any]
@@ -229,7 +235,7 @@ class _Saved:
 
 def _fitness(member: Member) -> float:
     if member.fitness is None:
-        raise RunError(f"genome {member.id} was not judged yet")
+        raise RunError(f"genome {member.id} has no fitness before its first evaluation")
     return member.fitness
 
 

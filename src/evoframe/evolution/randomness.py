@@ -1,4 +1,4 @@
-"""Random streams: one seed, one stream for each name, whatever the order in which they are made."""
+"""Random streams: one per seed and name, independent of the order of their creation."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ __all__ = ["stream"]
 
 
 def stream(seed: int, name: str) -> np.random.Generator:
-    """Return the stream that belongs to *name* in a run with this *seed*.
+    """Return the random stream called *name* of a run with this *seed*.
 
     Args:
-        seed: The run's seed, not negative.
-        name: Such as ``population/morphology``; different names give independent streams.
+        seed: Seed of the run, not negative.
+        name: Name, such as ``population/morphology``; different names give independent streams.
     """
     digest = hashlib.sha256(name.encode()).digest()
     key = tuple(int.from_bytes(digest[start : start + 4], "little") for start in range(0, 16, 4))

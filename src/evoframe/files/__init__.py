@@ -1,4 +1,4 @@
-"""Files on disk: reading what may come from anyone, atomic writing, locks."""
+"""Files on disk: reading of untrusted files, atomic writing, locks."""
 
 from evoframe.files.locks import LOCK_FILE, Lock, acquire_lock, locked, locked_after_others, released_on_error
 from evoframe.files.reading import (

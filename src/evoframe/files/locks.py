@@ -1,4 +1,4 @@
-"""What is written by one process at a time: a run's directory, and what the processes of a study share."""
+"""Locks of run directories and of the files that the processes of a study share."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from evoframe.errors import InputError, LockedError
 __all__ = ["LOCK_FILE", "Lock", "acquire_lock", "locked", "locked_after_others", "released_on_error"]
 
 LOCK_FILE = "run.lock"
-"""Stays in the directory: to remove it would let two processes lock two files of one name."""
+"""Name of the lock file; it is never removed, since two processes could then lock two files of this name."""
 
 Lock = filelock.BaseFileLock
 
 
 def acquire_lock(directory: Path) -> Lock:
-    """Return the lock of a run's directory, which ends with this process at the latest, however it ends.
+    """Lock a run directory and return the lock; the end of this process releases it, even after a kill.
 
     Raises:
-        LockedError: Another process has it.
+        LockedError: Another process holds the lock.
         InputError: The directory cannot be written.
     """
     lock = filelock.FileLock(directory / LOCK_FILE, timeout=0)
@@ -30,16 +30,16 @@ def acquire_lock(directory: Path) -> Lock:
         lock.acquire()
     except filelock.Timeout as error:
         raise LockedError(
-            f"{directory}: is being written by another process; wait until it has ended, or end it"
+            "another process is writing to this directory; wait until it ends, or stop it", source=directory
         ) from error
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+        raise InputError(f"cannot be used as a run directory: {error.strerror}", source=directory) from error
     return lock
 
 
 @contextlib.contextmanager
 def released_on_error(lock: Lock) -> Iterator[None]:
-    """Give the lock back if what follows fails; else it is somebody's to keep."""
+    """Release the lock if the block fails; otherwise keep it."""
     try:
         yield
     except BaseException:
@@ -49,7 +49,7 @@ def released_on_error(lock: Lock) -> Iterator[None]:
 
 @contextlib.contextmanager
 def locked(directory: Path) -> Iterator[None]:
-    """Have the lock of a run's directory for as long as what follows takes.
+    """Hold the lock of a run directory during the block.
 
     Raises:
         LockedError: As :func:`acquire_lock`.
@@ -64,19 +64,19 @@ def locked(directory: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def locked_after_others(path: Path) -> Iterator[None]:
-    """Have a lock for as long as what follows takes; wait for the processes that have it before.
+    """Wait until other processes release a lock, then hold it during the block.
 
     Args:
-        path: A file of its own, which stays, as :data:`LOCK_FILE` does.
+        path: The lock file, which is never removed, as :data:`LOCK_FILE`.
 
     Raises:
-        InputError: It cannot be written.
+        InputError: The lock file cannot be written.
     """
     lock = filelock.FileLock(path)
     try:
         lock.acquire()
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise InputError(f"cannot be written: {error.strerror}", source=path) from error
     try:
         yield
     finally:

@@ -1,4 +1,4 @@
-"""Files that may come from anyone: read whole, but only if they are files, and not endless."""
+"""Reading of untrusted files: regular files only, up to a maximum size."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = [
 ]
 
 LARGEST_DOCUMENT = 64
-"""MiB; a design or a state of this size is none of ours."""
+"""Maximum size of a design or of a saved state, MiB; real ones are far smaller."""
 
 
 def read_text(path: Path, largest: int) -> str:
@@ -30,30 +30,28 @@ def read_text(path: Path, largest: int) -> str:
 
     Args:
         path: The file.
-        largest: How many MiB it may have.
+        largest: Maximum size, MiB.
 
     Raises:
-        InputError: It cannot be read, is too large, or is no text.
+        InputError: The file cannot be read, is too large, or is not UTF-8 text.
     """
     try:
         with path.open("rb") as file:
             content = file.read((largest << 20) + 1)
         if len(content) > largest << 20:
-            raise InputError(f"{path}: is larger than {largest} MiB, which none of ours is")
+            raise InputError(f"exceeds {largest} MiB", source=path)
         return content.decode("utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: is not UTF-8 text") from error
-    except ValueError as error:  # a name that no file can have
-        raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
+        raise InputError("is not UTF-8 text", source=path) from error
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
 
 
 def parsed_json(text: str) -> Any:
-    """Return what a file from anyone holds.
+    """Return the value of an untrusted JSON text.
 
     Raises:
-        ValueError: It is not valid JSON.
+        ValueError: The text is not valid JSON.
     """
     try:
         return json.loads(text)
@@ -62,79 +60,85 @@ def parsed_json(text: str) -> Any:
 
 
 def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputError) -> dict[str, Any]:
-    """Return the tables of a TOML file from anyone.
+    """Return the tables of an untrusted TOML text.
 
     Args:
-        text: Its text.
-        origin: The name of the file in messages.
+        text: The text.
+        origin: The source named in errors: a file or an option.
         error_type: Type of the error.
 
     Raises:
-        EvoframeError: It is not valid TOML; of the given type.
+        EvoframeError: The text is not valid TOML; of the given type.
     """
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
-        raise error_type(f"{origin}: not valid TOML: {error}") from error
+        raise error_type(f"not valid TOML: {error}", source=origin) from error
 
 
 def is_directory(path: Path) -> bool:
-    """Return whether there is a directory.
+    """Return whether *path* is a directory.
 
     Raises:
-        InputError: There is nothing, or it cannot be looked at.
+        InputError: The path does not exist or cannot be accessed.
     """
-    return stat.S_ISDIR(_looked_at(path))
+    return stat.S_ISDIR(_mode(path))
 
 
 def is_file(path: Path) -> bool:
-    """Return whether there is a file; not if there is nothing.
+    """Return whether *path* is a regular file; false if it does not exist.
 
     Raises:
-        InputError: It cannot be looked at.
+        InputError: The path cannot be accessed.
     """
     try:
-        return stat.S_ISREG(_looked_at(path))
+        return stat.S_ISREG(_mode(path))
     except InputError as error:
         if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
             return False
         raise
 
 
-def _looked_at(path: Path) -> int:
+def _mode(path: Path) -> int:
     try:
         return path.stat().st_mode
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:  # a name that no file can have
-        raise InputError(f"{str(path)!r}: cannot be read: {error}") from error
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError | ValueError) -> InputError:
+    if isinstance(error, OSError):
+        return InputError(f"cannot be read: {error.strerror}", source=path)
+    return InputError(f"cannot be read: {error}", source=repr(str(path)))  # a name with a null character
 
 
 def shown_name(path: Path) -> str:
-    """Return what a directory is called in a title, however a person named it: text that can be written."""
+    """Return the name of a directory for a title; characters that UTF-8 cannot encode become ``?``."""
     return path.resolve().name.encode("utf-8", "replace").decode()
 
 
 def refuse_links(directory: Path) -> None:
-    """Make sure that what lies in a run's directory is there, and not elsewhere.
+    """Refuse a run directory with links, which could lead to files elsewhere.
 
     Raises:
-        InputError: There is a link, or something that is neither a file nor a directory.
+        InputError: The directory contains a link, or something that is neither a file nor a directory.
     """
     try:
         for path in directory.iterdir():
-            mode = _mode(path)
+            mode = _own_mode(path)
             if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-                what = "a link" if stat.S_ISLNK(mode) else "no file"
-                raise InputError(f"{path}: is {what}; a run's directory has nothing but files")
+                found = "a link" if stat.S_ISLNK(mode) else "not a regular file"
+                raise InputError(
+                    f"is {found}; a run directory may contain only files and directories", source=path
+                )
     except FileNotFoundError:
-        return  # no directory: whoever reads it says so
+        return  # the caller reports a missing directory
     except OSError as error:
-        raise InputError(f"{directory}: cannot be read: {error.strerror}") from error
+        raise InputError(f"cannot be read: {error.strerror}", source=directory) from error
 
 
-def _mode(path: Path) -> int:
+def _own_mode(path: Path) -> int:
     try:
         return path.lstat().st_mode
-    except FileNotFoundError:  # a journal that has just gone
+    except FileNotFoundError:  # a journal that SQLite has just removed
         return stat.S_IFREG

@@ -1,4 +1,4 @@
-"""Writing of files: atomically, and JSON always in the same form."""
+"""Atomic writing of files, and JSON in one canonical form."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _UNFINISHED = ".new"
 
 
 def write_json(path: Path, document: Any) -> None:
-    """Write JSON as :func:`write_atomically` does, always in the same way."""
+    """Write JSON atomically; equal documents give equal bytes."""
     write_atomically(path, f"{json_text(document)}\n".encode())
 
 
 def write_atomically(path: Path, data: bytes) -> None:
-    """Write a file so that a reader sees the old one or the new one, never a part.
+    """Write a file so that readers see either the old or the new content, never a part.
 
     Raises:
-        RunError: It cannot be written.
+        RunError: The file cannot be written.
     """
     temporary = path.with_name(f".{path.name}{_UNFINISHED}")
     try:
@@ -34,38 +34,38 @@ def write_atomically(path: Path, data: bytes) -> None:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        with contextlib.suppress(OSError):  # the first error is the one to tell
+        with contextlib.suppress(OSError):  # the first error is the one to report
             temporary.unlink(missing_ok=True)
-        raise RunError(f"{path}: cannot be written: {error.strerror}") from error
+        raise RunError(f"cannot be written: {error.strerror}", source=path) from error
 
 
-# What contains itself ends in a RecursionError.
+# Without this check, a value that contains itself raises RecursionError.
 _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False, check_circular=False).encode
 
 
 def json_text(document: Any) -> str:
-    """Return JSON values as compact text, the same for the same values.
+    """Return JSON values as compact text; equal values give equal text.
 
     Raises:
-        TypeError: It has a value that JSON has not.
-        ValueError: It has a number that is not finite.
-        RecursionError: It contains itself, or is nested too deeply.
+        TypeError: The document contains a value that JSON cannot represent.
+        ValueError: The document contains a number that is not finite.
+        RecursionError: The document contains itself, or is nested too deeply.
     """
     return _encode(document)
 
 
 def is_leftover(path: Path) -> bool:
-    """Return whether this is what a kill has left of the writing of a file."""
+    """Return whether *path* is a temporary file left by a killed process."""
     return path.name.startswith(".") and path.name.endswith(_UNFINISHED)
 
 
 def remove(path: Path) -> None:
-    """Remove a file, if it is there.
+    """Remove a file, if it exists.
 
     Raises:
-        RunError: It cannot be removed.
+        RunError: The file cannot be removed.
     """
     try:
         path.unlink(missing_ok=True)
     except OSError as error:
-        raise RunError(f"{path}: cannot be removed: {error.strerror}") from error
+        raise RunError(f"cannot be removed: {error.strerror}", source=path) from error

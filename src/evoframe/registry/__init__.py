@@ -1,4 +1,4 @@
-"""The plugins of this process: how they are found, what they offer, who observes."""
+"""The plugins of this process: discovery, components on offer, observers."""
 
 from evoframe.registry.discovery import discover
 from evoframe.registry.hookspecs import hookimpl

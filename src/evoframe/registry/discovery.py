@@ -1,4 +1,4 @@
-"""Discovery of plugins, each load guarded."""
+"""Discovery of plugins; an installed plugin that fails to load is skipped."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from evoframe.registry.registry import Plugins, Skipped, normalized
 __all__ = ["discover"]
 
 GROUP = "evoframe"
-"""Group of the entry points of plugins."""
+"""Entry point group of plugins."""
 
 
 def discover(modules: Iterable[str] = ()) -> Plugins:
     """Load the installed plugins and the local *modules*.
 
-    The environment variables ``EVOFRAME_PLUGINS_BLOCK`` and ``EVOFRAME_PLUGINS_REQUIRE`` name distributions,
-    separated by commas, that are not loaded, or that must be.
+    The environment variables ``EVOFRAME_PLUGINS_BLOCK`` and ``EVOFRAME_PLUGINS_REQUIRE`` list the
+    distributions, separated by commas, that are blocked or required.
 
     Args:
-        modules: Importable names, or paths of Python files, of plugins that no distribution installs.
+        modules: Importable names, or paths of Python files, of plugins without a distribution.
 
     Raises:
         PluginError: A local module, or a required distribution, cannot be used.
 
     Warns:
-        PluginWarning: An installed plugin cannot be used; the others are.
+        PluginWarning: An installed plugin cannot be used and was skipped.
     """
     plugins = Plugins()
     blocked = {normalized(name) for name in _listed("EVOFRAME_PLUGINS_BLOCK")}
@@ -67,7 +67,7 @@ def _entry_points() -> list[tuple[Source, importlib.metadata.EntryPoint]]:
 def _load_guarded(plugins: Plugins, source: Source, entry_point: importlib.metadata.EntryPoint) -> None:
     try:
         plugins.add(entry_point.load(), source)
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - any fault of a plugin is only that plugin's
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a faulty plugin must not affect others
         cause = cause_of(error)
         plugins.skipped.append(Skipped(source, cause))
         warnings.warn(f"plugin {source} is skipped: {cause}", PluginWarning, stacklevel=3)
@@ -79,7 +79,7 @@ def _load_local(plugins: Plugins, module: str) -> None:
         plugins.add(_import_local(module, name), Source(name, "local", name))
     except (Exception, SystemExit) as error:
         cause = cause_of(error)
-        raise PluginError(f"plugin module '{module}' cannot be used: {cause}") from error
+        raise PluginError(f"cannot be used as a plugin: {cause}", source=module) from error
 
 
 def _import_local(module: str, name: str) -> ModuleType:
@@ -90,13 +90,13 @@ def _import_local(module: str, name: str) -> ModuleType:
         return importlib.import_module(module)
     path = Path(module)
     if not path.is_file():
-        raise PluginError("there is no such file")
-    private = f"evoframe_local_{name}"  # so that my random.py does not stand in for Python's
+        raise PluginError("no such file")
+    private = f"evoframe_local_{name}"  # a local random.py must not replace Python's
     spec = importlib.util.spec_from_file_location(private, path)
     if spec is None or spec.loader is None:
-        raise PluginError("it is not a Python module")
+        raise PluginError("not a Python module")
     loaded = importlib.util.module_from_spec(spec)
-    sys.modules[private] = loaded  # attrs looks modules up while it makes classes
+    sys.modules[private] = loaded  # attrs looks up modules when it creates classes
     try:
         spec.loader.exec_module(loaded)
     except BaseException:

@@ -1,7 +1,7 @@
-"""The contract between the core and its plugins.
+"""The hooks that plugins implement.
 
-A plugin is one module with functions of these names, marked with :data:`evoframe.hookimpl`, and one entry
-point in the group ``evoframe``.
+A plugin is a module with functions of these names, marked with :data:`evoframe.hookimpl`, and an entry point
+in the group ``evoframe``.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def evoframe_simulators() -> Mapping[str, type[Simulator]]:  # type: ignore[empt
     """Offer simulators of designs.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -51,7 +51,7 @@ def evoframe_encoders() -> Mapping[str, type[Encoder]]:  # type: ignore[empty-bo
     """Offer encoders, which decode networks into parts of a design.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -59,10 +59,10 @@ def evoframe_encoders() -> Mapping[str, type[Encoder]]:  # type: ignore[empty-bo
 
 @hookspec
 def evoframe_strategies() -> Mapping[str, type[CollaborationStrategy]]:  # type: ignore[empty-body]
-    """Offer strategies that choose collaborators.
+    """Offer collaboration strategies, which choose collaborators.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -73,7 +73,7 @@ def evoframe_aggregators() -> Mapping[str, type[Aggregator]]:  # type: ignore[em
     """Offer fitness aggregators.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -84,7 +84,7 @@ def evoframe_evolvers() -> Mapping[str, type[Evolver]]:  # type: ignore[empty-bo
     """Offer evolutionary algorithms.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -95,7 +95,7 @@ def evoframe_objectives() -> Mapping[str, type[Objective]]:  # type: ignore[empt
     """Offer objectives, which score outcomes.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -103,10 +103,10 @@ def evoframe_objectives() -> Mapping[str, type[Objective]]:  # type: ignore[empt
 
 @hookspec
 def evoframe_executors() -> Mapping[str, type[Executor]]:  # type: ignore[empty-body]
-    """Offer ways to spread simulations over workers.
+    """Offer executors, which distribute simulations over workers.
 
     Returns:
-        Name used in configuration files -> frozen attrs class; its fields are its options.
+        Name in configuration files -> frozen attrs class, whose fields are the options.
 
     .. versionadded:: 0.1
     """
@@ -114,7 +114,7 @@ def evoframe_executors() -> Mapping[str, type[Executor]]:  # type: ignore[empty-
 
 @hookspec
 def evoframe_run_started(config: RunConfig, directory: Path) -> None:
-    """Observe that a run starts, or goes on.
+    """Observe the start or resumption of a run.
 
     Args:
         config: The resolved configuration.
@@ -128,7 +128,7 @@ def evoframe_run_started(config: RunConfig, directory: Path) -> None:
 def evoframe_turn_finished(turn: Turn) -> None:
     """Observe a turn that is already saved.
 
-    An observer that raises is disabled with a warning; the run and the other observers go on.
+    An observer that raises is disabled with a warning; the run and the other observers continue.
 
     .. versionadded:: 0.1
     """
@@ -148,7 +148,7 @@ def evoframe_run_finished(directory: Path, completed: bool) -> None:
 
 @hookspec
 def evoframe_commands(cli: click.Group) -> None:
-    """Add commands to the program.
+    """Add commands to the command line.
 
     Args:
         cli: The click group ``evoframe``.

@@ -1,4 +1,4 @@
-"""Observers of a run: each is told on its own, and none can stop the run."""
+"""Observers of a run, each notified separately; none can stop the run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["Observers"]
 
 
 class Observers:
-    """The plugins of a manager that listen to the lifecycle hooks."""
+    """The plugins of a manager that implement lifecycle hooks."""
 
     def __init__(self, manager: pluggy.PluginManager) -> None:
         self._manager = manager
@@ -32,7 +32,7 @@ class Observers:
             others = [other for other in self._plugins if other is not plugin]
             try:
                 self._manager.subset_hook_caller(hook, others)(**arguments)
-            except (Exception, SystemExit) as error:  # noqa: BLE001 - whatever it does, the run goes on
+            except (Exception, SystemExit) as error:  # noqa: BLE001 - no observer can stop the run
                 self._active.remove(plugin)
                 name = self._manager.get_name(plugin)
                 warnings.warn(

@@ -1,4 +1,4 @@
-"""The registry: what plugins offer, who observes, and who was skipped."""
+"""The registry of plugins: components on offer, observers, and skipped plugins."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import pluggy
 
-from evoframe.contract import Source, protocols
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, Source, protocols
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import suggestion
 from evoframe.registry import hookspecs
@@ -24,8 +24,8 @@ class Kind:
     """A kind of component.
 
     Attributes:
-        hook: The hook that offers components of this kind.
-        protocol: What they must do.
+        hook: Hook that offers components of this kind.
+        protocol: Protocol of these components.
     """
 
     hook: str
@@ -41,7 +41,13 @@ KINDS: Mapping[str, Kind] = {
     "simulator": Kind("evoframe_simulators", protocols.Simulator),
     "strategy": Kind("evoframe_strategies", protocols.CollaborationStrategy),
 }
-"""Name of a kind in messages -> the kind."""
+"""Name of a kind -> the kind."""
+
+_NOUNS = {"strategy": "collaboration strategy"}  # in messages, if not the name of the kind
+
+_KEYS = {kind: key for key, kind in COMPONENTS.items()} | {
+    kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
+}  # kind -> configuration key
 
 
 @attrs.frozen
@@ -49,8 +55,8 @@ class Offer:
     """A component that a plugin offers.
 
     Attributes:
-        kind: One of :data:`KINDS`.
-        name: The name in configuration files.
+        kind: Key of :data:`KINDS`.
+        name: Name in configuration files.
         component: The frozen attrs class.
         source: The plugin that offers it.
     """
@@ -63,7 +69,7 @@ class Offer:
 
 @attrs.frozen
 class Skipped:
-    """A plugin that could not be used, and why."""
+    """A plugin that could not be used, and the cause."""
 
     source: Source
     cause: str
@@ -77,21 +83,21 @@ def _new_manager() -> pluggy.PluginManager:
 
 @attrs.define
 class Plugins:
-    """The plugins of this process: what they offer, who observes, and who was skipped."""
+    """The plugins of this process: components on offer, observers, and skipped plugins."""
 
     manager: pluggy.PluginManager = attrs.field(factory=_new_manager)
     offers: list[Offer] = attrs.field(factory=list)
     skipped: list[Skipped] = attrs.field(factory=list)
 
     def add(self, plugin: object, source: Source) -> None:
-        """Register *plugin*, or none of it.
+        """Register *plugin* completely; after an error, nothing of it is registered.
 
         Raises:
-            PluginError: It implements no hook or an unknown one, or offers something that is no component.
+            PluginError: The plugin implements no hook or an unknown one, or offers an invalid component.
         """
         name = f"{source.distribution}:{source.entry_point}"
         if self.manager.has_plugin(name):
-            raise PluginError("there is a plugin of that name already")
+            raise PluginError(f"a plugin named '{name}' is already registered")
         try:
             self.manager.register(plugin, name=name)
             _check_hooks(self.manager, plugin)
@@ -104,7 +110,7 @@ class Plugins:
             raise
 
     def without(self, distributions: Iterable[str]) -> Plugins:
-        """Return the same plugins but those of the named *distributions*."""
+        """Return the plugins without those of the named *distributions*."""
         blocked = {normalized(distribution) for distribution in distributions}
         if not blocked:
             return self
@@ -117,10 +123,10 @@ class Plugins:
         return kept
 
     def require(self, distributions: Iterable[str]) -> None:
-        """Make sure that each of *distributions* offers something here.
+        """Check that a plugin of each of *distributions* is usable.
 
         Raises:
-            PluginError: One is missing or was skipped; says why.
+            PluginError: A distribution is missing or was skipped; names the cause.
         """
         names = {name.rsplit(":", 1)[0] for name, _ in self.manager.list_name_plugin()}
         usable = {normalized(name) for name in names}
@@ -131,17 +137,21 @@ class Plugins:
                 raise PluginError(f"required plugin '{distribution}' cannot be used: {causes[0]}")
             if wanted not in usable:
                 found = ", ".join(sorted(names))
-                raise PluginError(f"required plugin '{distribution}' is not installed; found: {found}")
+                raise PluginError(f"required plugin '{distribution}' is not installed; installed: {found}")
 
     def names(self, kind: str) -> list[str]:
         """Return the sorted names of the components of a *kind*."""
         return sorted({offer.name for offer in self.offers if offer.kind == kind})
 
+    def kinds_of(self, name: str) -> list[str]:
+        """Return the sorted kinds of the components with this *name*."""
+        return sorted({offer.kind for offer in self.offers if offer.name == name})
+
     def find(self, kind: str, asked: str) -> Offer:
         """Return the component *asked* for, as ``name`` or ``distribution:name``.
 
         Raises:
-            ConfigurationError: There is none of that name, or several; says what there is.
+            ConfigurationError: No component has that name, or several have; names the alternatives.
         """
         distribution, _, name = asked.rpartition(":")
         found = [
@@ -155,11 +165,18 @@ class Plugins:
             return found[0]
         if found:
             choices = " or ".join(f"'{offer.source.distribution}:{name}'" for offer in found)
-            raise ConfigurationError(f"{kind} '{asked}' is offered by several plugins; write {choices}")
+            raise ConfigurationError(
+                f"several plugins offer the {_NOUNS.get(kind, kind)} '{asked}'; write {choices}"
+            )
         raise ConfigurationError(self._unknown(kind, asked))
 
     def _unknown(self, kind: str, asked: str) -> str:
-        message = f"unknown {kind} '{asked}'{suggestion(asked, self.names(kind), 'installed')}"
+        others = [f"'{_KEYS[other]}={asked}'" for other in self.kinds_of(asked)]
+        if others:
+            end = f"; did you mean {' or '.join(others)}? installed: {', '.join(self.names(kind)) or 'none'}"
+        else:
+            end = suggestion(asked, self.names(kind), "installed")
+        message = f"unknown {_NOUNS.get(kind, kind)} '{asked}'{end}"
         if self.skipped:
             causes = "; ".join(f"{skipped.source}: {skipped.cause}" for skipped in self.skipped)
             message += f" (skipped plugins: {causes})"
@@ -167,7 +184,7 @@ class Plugins:
 
 
 def normalized(distribution: str) -> str:
-    """Return a distribution's name as packaging compares it (PEP 503)."""
+    """Return the normalized name of a distribution (PEP 503)."""
     return re.sub(r"[-_.]+", "-", distribution).lower()
 
 
@@ -175,7 +192,7 @@ def _check_hooks(manager: pluggy.PluginManager, plugin: object) -> None:
     known = [name for name in dir(hookspecs) if name.startswith("evoframe_")]
     callers = manager.get_hookcallers(plugin)
     if not callers:
-        raise PluginError("it implements no hook; are its functions marked with evoframe.hookimpl?")
+        raise PluginError("the plugin implements no hook; mark its functions with @evoframe.hookimpl")
     for caller in callers:
         if not caller.has_spec():
             raise PluginError(f"unknown hook '{caller.name}'{suggestion(caller.name, known)}")
@@ -189,12 +206,14 @@ def _offers(manager: pluggy.PluginManager, plugin: object, source: Source) -> It
 
 
 def _checked(kind: str, hook: str, offered: Any, source: Source) -> Iterator[Offer]:
-    """Yield what a hook returned, if it is what a hook must return."""
+    """Check the return value of a hook and yield its components."""
     if not isinstance(offered, Mapping):
-        raise PluginError(f"{hook} must return a mapping of names to classes, not {offered!r}")
+        raise PluginError(f"{hook} must return a mapping of names to classes, found {offered!r}")
     for name, component in offered.items():
         if not (isinstance(name, str) and _COMPONENT_NAME.fullmatch(name)):
-            raise PluginError(f"{hook} offers the name {name!r}; use lower-case letters, digits, - and _")
+            raise PluginError(
+                f"{hook} offers the invalid name {name!r}; use lower-case letters, digits, - and _"
+            )
         if not (isinstance(component, type) and attrs.has(component)):
-            raise PluginError(f"{hook} offers '{name}': {component!r}, which is no attrs class")
+            raise PluginError(f"{hook} offers '{name}': {component!r} is not an attrs class")
         yield Offer(kind, name, component, source)

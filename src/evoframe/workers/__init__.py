@@ -1,4 +1,4 @@
-"""Worker processes, and the number of cores they may use."""
+"""Worker processes, and the number of available cores."""
 
 from evoframe.workers.cores import available_cores
 from evoframe.workers.processes import WorkerProcesses

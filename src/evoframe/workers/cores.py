@@ -1,4 +1,4 @@
-"""How many cores there are to work with."""
+"""Number of cores that are available to this process."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["available_cores"]
 
 
 def available_cores() -> int:
-    """Return the number of cores that this process may use, which a container or a job may have limited."""
+    """Return the number of cores that this process may use, within the limits of a container or job."""
     process_cpu_count: Callable[[], int | None] | None = getattr(os, "process_cpu_count", None)
     if process_cpu_count is not None:  # Python 3.13 and later
         return process_cpu_count() or 1

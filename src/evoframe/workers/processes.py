@@ -1,4 +1,4 @@
-"""Processes that work for this one: they end with it, and it notices whenever one of them does."""
+"""Worker processes, which end with their parent process; the end of a worker is always detected."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ __all__ = ["WorkerProcesses"]
 
 R = TypeVar("R")
 
-_SILENT = 256  # stands for an exit code of 0, which pebble would take for the end of a worker's work
+_SILENT = 256  # replaces the exit code 0, which pebble treats as a normal end
 
 
 class _Process(SpawnProcess):
-    """A process of which nobody expects that it ends by itself."""
+    """A process that is not expected to end by itself."""
 
     @property
     def exitcode(self) -> int | None:
@@ -36,22 +36,22 @@ class _Process(SpawnProcess):
 
 
 class _Spawning(SpawnContext):
-    """Starts processes afresh: a copy of this process would have its locks."""
+    """A context that spawns processes: a forked process would inherit locks."""
 
     Process = _Process
 
 
 class WorkerProcesses:
-    """Workers; their processes start with the first order, and do not hear Ctrl-C.
+    """A pool of worker processes, which start with the first task and ignore Ctrl-C.
 
-    What becomes of an order that has no result: :class:`TimeoutError` if it took too long and its worker was
-    ended; :class:`pebble.ProcessExpired` if its worker ended by itself, see :meth:`ending`;
-    :class:`concurrent.futures.process.BrokenProcessPool` if there are no workers.
+    A task without a result raises :class:`TimeoutError` if it exceeded its time limit and its worker was
+    stopped; :class:`pebble.ProcessExpired` if its worker ended by itself, see :meth:`ending`; and
+    :class:`concurrent.futures.process.BrokenProcessPool` if the pool was closed or could not start workers.
 
     Args:
-        workers: How many.
-        initializer: Called in each process before its first order.
-        initargs: Its arguments, which may be locks and queues of :attr:`context`.
+        workers: Number of processes.
+        initializer: Function that each process calls before its first task.
+        initargs: Arguments of *initializer*, which may be locks and queues of :attr:`context`.
     """
 
     context = _Spawning()
@@ -61,41 +61,41 @@ class WorkerProcesses:
     ) -> None:
         self._outstanding: set[Future[Any]] = set()
         self._pool = pebble.ProcessPool(
-            workers, initializer=_begin, initargs=[initializer, *initargs], context=self.context
+            workers, initializer=_initialize, initargs=[initializer, *initargs], context=self.context
         )
 
     @property
     def active(self) -> bool:
-        """Whether there are workers, or will be."""
+        """Whether the pool accepts tasks."""
         return self._pool.active
 
     def schedule(
         self, function: Callable[..., R], arguments: Sequence[Any], time_limit: float | None = None
     ) -> Future[R]:
-        """Let a worker call a function.
+        """Schedule the call of a function in a worker.
 
         Args:
-            function: Can be imported by its name.
-            arguments: Its arguments.
-            time_limit: Seconds after which the worker is ended.
+            function: A function that can be imported by name.
+            arguments: Arguments of the function.
+            time_limit: Time after which the worker is stopped, s.
         """
-        with _interrupts_held_back():  # processes inherit that; Ctrl-C is for the one that a person started
+        with _sigint_blocked():  # inherited by new processes: only the parent handles Ctrl-C
             future = self._pool.schedule(function, arguments, timeout=time_limit)
         self._outstanding.add(future)
         future.add_done_callback(self._outstanding.discard)
         return future
 
     def close(self) -> None:
-        """End the workers, whatever they are doing; orders without a result have lost theirs."""
+        """Stop the workers immediately; tasks without a result raise BrokenProcessPool."""
         self._pool.stop()  # type: ignore[no-untyped-call]
         self._pool.join()
         for future in list(self._outstanding):
             with contextlib.suppress(InvalidStateError):  # done
-                future.set_exception(BrokenProcessPool())  # pebble forgets what it has not yet sent
+                future.set_exception(BrokenProcessPool())  # pebble drops tasks that it has not sent
 
     @staticmethod
     def ending(error: pebble.ProcessExpired) -> str:
-        """Return what a worker ended with, in words."""
+        """Return the exit code or signal that ended a worker, as text."""
         code = error.exitcode
         if code >= 0:
             return f"exit code {0 if code == _SILENT else code}"
@@ -103,8 +103,8 @@ class WorkerProcesses:
 
 
 @contextlib.contextmanager
-def _interrupts_held_back() -> Iterator[None]:
-    """Let no Ctrl-C come to this thread for a moment, where threads can have that."""
+def _sigint_blocked() -> Iterator[None]:
+    """Block SIGINT in this thread, if the platform supports it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -115,18 +115,18 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
-def _begin(initializer: Callable[..., object] | None, *initargs: Any) -> None:
+def _initialize(initializer: Callable[..., object] | None, *initargs: Any) -> None:
     _end_with_parent()
     if initializer is not None:
         initializer(*initargs)
 
 
 def _end_with_parent() -> None:
-    """Let this worker process end when the one that started it is gone, whatever it is doing."""
+    """End this worker process when its parent process has ended, even during a computation."""
     parent = multiprocessing.parent_process()
     if parent is None:
-        raise RuntimeError("this is no worker process")
-    if sys.platform == "linux":  # the kernel ends it even where a simulator keeps Python's lock
+        raise RuntimeError("this process is not a worker process")
+    if sys.platform == "linux":  # the kernel ends the worker even if a simulator holds the GIL
         fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
         flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
         fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)

@@ -1,4 +1,4 @@
-"""A whole third-party plugin: one component, one hook."""
+"""A complete third-party plugin with one component."""
 
 import statistics
 
