@@ -1,6 +1,6 @@
 """The four averages of the paper: ``am``, ``wm``, ``gm``, ``hm``.
 
-All of them sort the scores first, so that their order cannot matter, even in the last bit.
+All of them sort the scores first, so that the result does not depend on their order, to the last bit.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from evoframe import Aggregator, ConfigurationError, Scores, hookimpl
 __all__ = ["PAPER_WEIGHTS", "ArithmeticMean", "GeometricMean", "HarmonicMean", "WeightedMean"]
 
 LARGEST = 1e100
-"""Up to this score every average is finite."""
+"""Largest absolute score for which every average is finite."""
 
 PAPER_WEIGHTS: Mapping[int, tuple[float, ...]] = MappingProxyType(
     {
@@ -33,12 +33,12 @@ PAPER_WEIGHTS: Mapping[int, tuple[float, ...]] = MappingProxyType(
 """Number of collaborators -> weights of the sorted scores, the largest score first (the paper's table)."""
 
 FOLDED: Mapping[int, int] = MappingProxyType({4: 2, 6: 3, 20: 10})
-"""Number of collaborators that ``fold`` accepts -> number of pairs that remain."""
+"""Number of collaborators that ``fold`` accepts -> number of values after folding."""
 
 
 @hookimpl
 def evoframe_aggregators() -> Mapping[str, type[Aggregator]]:
-    """Offer the averages of the paper."""
+    """Register the averages of the paper."""
     return {"am": ArithmeticMean, "wm": WeightedMean, "gm": GeometricMean, "hm": HarmonicMean}
 
 
@@ -49,37 +49,37 @@ class ArithmeticMean:
     domain: ClassVar[tuple[float, float]] = (-LARGEST, LARGEST)
 
     def check(self, n: int) -> None:
-        """Accept any number of collaborators but none."""
-        _refuse_none("am", n)
+        """Require at least one collaborator."""
+        _require_one("am", n)
 
     def aggregate(self, scores: Scores) -> float:
-        """Return the sum of *scores*, rounded once, over their number."""
+        """Return the sum of *scores*, rounded once, divided by their number."""
         values = _ascending(scores)
         return math.fsum(values) / len(values)
 
 
 def _sum_to_one(_: object, __: object, weights: tuple[float, ...]) -> None:
     if not weights:
-        raise ValueError("expected at least one weight")
+        raise ValueError("expected at least one weight, found none")
     for weight in weights:
         if not weight >= 0:
-            raise ValueError(f"expected no negative weight, found {weight}")
+            raise ValueError(f"expected non-negative weights, found {weight}")
     total = math.fsum(weights)
     if not abs(total - 1) <= 1e-12:
-        raise ValueError(f"expected weights that sum to 1, these sum to {total:.15g}")
+        raise ValueError(f"expected weights that sum to 1, found the sum {total:.15g}")
 
 
 @attrs.frozen
 class WeightedMean:
     """Weighted mean of the sorted scores (WM of the paper, arXiv 2510.24510).
 
-    Scores are sorted from the largest down and dotted with *weights*, so an individual is rewarded for its
-    best encounters. Without *weights* the paper's table for 2, 3, 5, 7 or 10 collaborators is used.
+    The scores, in descending order, are multiplied by *weights* and summed, so an individual is rewarded for
+    its best pairs. Without *weights*, the paper's table for 2, 3, 5, 7 or 10 collaborators is used.
 
     Attributes:
-        weights: Non-negative, summing to 1; one for each collaborator, that of the largest score first.
-        fold: Accept 4, 6 and 20 collaborators too, by the rule of the paper's authors: neighbouring pairs of
-            the sorted scores are averaged, and the 2, 3 or 10 averages are weighted by the paper's table.
+        weights: One non-negative weight for each collaborator, the largest score's first; their sum is 1.
+        fold: Also accept 4, 6 and 20 collaborators, by the rule in the authors' code: adjacent sorted scores
+            are averaged in twos, and the 2, 3 or 10 averages are weighted by the paper's table.
     """
 
     weights: tuple[float, ...] | None = attrs.field(default=None, validator=validators.optional(_sum_to_one))
@@ -88,15 +88,15 @@ class WeightedMean:
     domain: ClassVar[tuple[float, float]] = (-LARGEST, LARGEST)
 
     @fold.validator
-    def _works_with_the_table(self, _: object, fold: bool) -> None:
+    def _requires_the_table(self, _: object, fold: bool) -> None:
         if fold and self.weights is not None:
             raise ValueError(
-                "fold works with the paper's weights only; set either aggregator.weights or aggregator.fold"
+                "fold requires the paper's weights; remove either aggregator.weights or aggregator.fold"
             )
 
     def check(self, n: int) -> None:
-        """Refuse *n* collaborators for which there are no weights."""
-        _refuse_none("wm", n)
+        """Require weights for *n* collaborators."""
+        _require_one("wm", n)
         self._weights(n)
 
     def aggregate(self, scores: Scores) -> float:
@@ -111,12 +111,12 @@ class WeightedMean:
         return _between(values[-1], mean, values[0])
 
     def _weights(self, n: int) -> tuple[float, ...]:
-        """Return the weights for *n* scores, or for the pairs that are left of them."""
+        """Return the weights for *n* scores; with ``fold``, for the averages that replace them."""
         if self.weights is not None:
             if len(self.weights) != n:
                 raise ConfigurationError(
                     f"wm has {_count(len(self.weights), 'weight')} for {_count(n, 'collaborator')}; "
-                    "set aggregator.weights to one for each collaborator"
+                    "set aggregator.weights to one weight for each collaborator"
                 )
             return self.weights
         weights = PAPER_WEIGHTS.get(FOLDED.get(n, n) if self.fold else n)
@@ -132,7 +132,7 @@ class WeightedMean:
 
 @attrs.frozen
 class _PositiveMean:
-    """What the two averages share that are only defined for positive scores."""
+    """Base of the two averages that are defined for positive scores only."""
 
     floor: float = attrs.field(default=1e-5, validator=[validators.gt(0), validators.le(LARGEST)])
     clip: bool = False
@@ -141,15 +141,15 @@ class _PositiveMean:
 
     @property
     def domain(self) -> tuple[float, float]:
-        """From *floor* up no score is replaced."""
+        """Range of the scores that are used unchanged."""
         return self.floor, LARGEST
 
     def check(self, n: int) -> None:
-        """Accept any number of collaborators but none."""
-        _refuse_none(self.name, n)
+        """Require at least one collaborator."""
+        _require_one(self.name, n)
 
     def _values(self, scores: Scores) -> list[float]:
-        """Return the sorted *scores*, *floor* in the place of those that are not positive, or too small."""
+        """Return the sorted *scores*, those not positive (with *clip*: below *floor*) replaced by *floor*."""
         least = self.floor if self.clip else 0.0
         return sorted(value if value > least else self.floor for value in _ascending(scores))
 
@@ -158,12 +158,12 @@ class _PositiveMean:
 class GeometricMean(_PositiveMean):
     """Geometric mean of the scores (GM of the paper, arXiv 2510.24510).
 
-    As in the code of the paper's authors, a score that is not positive counts as *floor*, while a smaller
-    positive one is left alone: 1e-6 counts less than -1.
+    As in the authors' code, *floor* replaces every score that is not positive, but positive scores below
+    *floor* are unchanged: a score of 1e-6 counts less than one of -1.
 
     Attributes:
-        floor: Stands for every score that is not positive; in the objective's unit.
-        clip: Raise the positive scores below *floor* to it too, so that a greater score never counts less.
+        floor: Value that replaces every score that is not positive, in the objective's unit.
+        clip: Raise positive scores below *floor* to *floor* too, so that a greater score never counts less.
     """
 
     name = "gm"
@@ -179,11 +179,11 @@ class GeometricMean(_PositiveMean):
 class HarmonicMean(_PositiveMean):
     """Harmonic mean of the scores (HM of the paper, arXiv 2510.24510).
 
-    Scores that are not positive are treated as :class:`GeometricMean` does.
+    Scores that are not positive are treated as in :class:`GeometricMean`.
 
     Attributes:
-        floor: Stands for every score that is not positive; in the objective's unit.
-        clip: Raise the positive scores below *floor* to it too, so that a greater score never counts less.
+        floor: Value that replaces every score that is not positive, in the objective's unit.
+        clip: Raise positive scores below *floor* to *floor* too, so that a greater score never counts less.
     """
 
     name = "hm"
@@ -191,34 +191,34 @@ class HarmonicMean(_PositiveMean):
     def aggregate(self, scores: Scores) -> float:
         """Return the reciprocal of the mean reciprocal of *scores*."""
         values = self._values(scores)
-        # In units of the smallest value every reciprocal is at most 1: nothing overflows, not even 1/5e-324.
+        # In units of the smallest value no reciprocal exceeds 1, so nothing overflows, not even 1/5e-324.
         smallest = values[0]
         mean = smallest * (len(values) / math.fsum(smallest / value for value in values))
         return _between(smallest, mean, values[-1])
 
 
-def _refuse_none(name: str, n: int) -> None:
+def _require_one(name: str, n: int) -> None:
     if n < 1:
-        raise ConfigurationError(f"{name} needs at least 1 collaborator, not {n}")
+        raise ConfigurationError(f"{name} requires at least 1 collaborator, found {n}")
 
 
 def _ascending(scores: Scores) -> list[float]:
-    """Return *scores* sorted, as Python's floats.
+    """Return *scores* in ascending order, as Python floats.
 
     Raises:
-        ValueError: There is none, or one is not finite.
+        ValueError: *scores* is empty, or one of them is not finite.
     """
     values: list[float] = np.sort(np.asarray(scores, dtype=np.float64)).tolist()
     if not values:
-        raise ValueError("there are no scores to aggregate")
-    for value in (values[0], values[-1]):  # the sort has put infinities at the ends, and a NaN at the last
+        raise ValueError("expected at least one score, found none")
+    for value in (values[0], values[-1]):  # sorting puts infinities at the ends, and NaN at the last place
         if not math.isfinite(value):
-            raise ValueError(f"scores must be finite, found {value}")
+            raise ValueError(f"expected finite scores, found {value}")
     return values
 
 
 def _between(smallest: float, mean: float, largest: float) -> float:
-    """Return *mean* without the rounding errors that take it out of the range of the values."""
+    """Return *mean* clamped to the range of the values, which rounding errors can push it out of."""
     return min(max(mean, smallest), largest)
 
 

@@ -1,4 +1,4 @@
-"""The built-in objectives: how far an actuator or a walker moves."""
+"""The built-in objectives: displacements of an actuator or a walker."""
 
 from collections.abc import Mapping
 
@@ -11,7 +11,7 @@ __all__ = ["FacePeak", "FaceYz", "TipDz", "TipYz", "Travel", "evoframe_objective
 
 @hookimpl
 def evoframe_objectives() -> Mapping[str, type[Objective]]:
-    """Offer the displacements of paper.md, and the distance that a free body travels."""
+    """Register the displacements of the actuator, and the distance that a free body travels."""
     return {
         "face-peak": FacePeak,
         "face-yz": FaceYz,

@@ -1,4 +1,4 @@
-"""Displacement of the free end between two samples of its trace."""
+"""Displacement of the free end between two samples of its track."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ __all__ = ["FaceYz", "TipDz", "TipYz"]
 
 @attrs.frozen
 class _Displacement:
-    """What all displacements share: a track, and the two samples between which it is measured.
+    """Base of the displacements: a track, and the two samples between which it is measured.
 
-    The paper's engine samples after the first step and then every 0.01 s at the earliest; the displacement of
-    the paper is that of sample 5 (t = 0.0673 s) from sample 0 (t = 0.0032 s).
+    The paper's engine samples after the first step and then at least 0.01 s apart; the paper's displacement
+    is measured from sample 0 (t = 0.0032 s) to sample 5 (t = 0.0673 s).
 
     Attributes:
-        every: Seconds between samples; 0 samples after every step.
-        first: Index of the sample that is measured from.
-        last: Index of the sample that is measured to.
+        every: Minimum seconds between samples; 0 samples after every step.
+        first: Index of the sample at which the displacement starts.
+        last: Index of the sample at which the displacement ends.
     """
 
     track: ClassVar[str]
@@ -37,13 +37,11 @@ class _Displacement:
 
     def __attrs_post_init__(self) -> None:
         if self.first >= self.last:
-            raise ValueError(
-                f"first must come before last, found first = {self.first} and last = {self.last}"
-            )
+            raise ValueError(f"expected first < last, found first = {self.first} and last = {self.last}")
 
     @property
     def record(self) -> Record:
-        """The two samples of the track."""
+        """The track at the two samples."""
         return Record(tracks=(self.track,), every=self.every, samples=(self.first, self.last))
 
     def _moved(self, outcome: Outcome) -> NDArray[np.float64]:
@@ -54,9 +52,9 @@ class _Displacement:
 
 @attrs.frozen
 class TipDz(_Displacement):
-    """How far the corner voxel of the free end rises, in metres; down is negative.
+    """Rise of the corner voxel of the free end, in meters; down is negative.
 
-    This is what the authors' coevolution maximises (paper.md, "The simulation of one pair").
+    The authors' code maximizes this (docs/experiment.md, "The simulation of a pair").
     """
 
     track = "tip"
@@ -68,7 +66,7 @@ class TipDz(_Displacement):
 
 @attrs.frozen
 class _DistanceYz(_Displacement):
-    """How far the track moves in the yz plane, in metres; never negative."""
+    """Distance that the track moves in the yz plane, in meters; never negative."""
 
     def score(self, outcome: Outcome) -> float:
         """Return the distance in the yz plane."""
@@ -77,9 +75,9 @@ class _DistanceYz(_Displacement):
 
 @attrs.frozen
 class TipYz(_DistanceYz):
-    """How far the corner voxel of the free end moves in the yz plane, in metres; never negative.
+    """Distance that the corner voxel of the free end moves in the yz plane, in meters; never negative.
 
-    This is the paper's wording, and the authors' first version.
+    This measure is the one that the paper describes, and that the first version of the authors' code used.
     """
 
     track = "tip"
@@ -87,6 +85,6 @@ class TipYz(_DistanceYz):
 
 @attrs.frozen
 class FaceYz(_DistanceYz):
-    """How far the centre of the free face moves in the yz plane, in metres; never negative."""
+    """Distance that the center of the free face moves in the yz plane, in meters; never negative."""
 
     track = "face"

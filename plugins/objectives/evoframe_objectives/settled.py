@@ -1,4 +1,4 @@
-"""Motion over a whole simulation, measured once it has settled."""
+"""Motion over a whole simulation, measured after an initial time in which the body settles."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from evoframe import ConfigurationError, Outcome, Record
 
 __all__ = ["FacePeak", "Travel"]
 
-_ROUNDING = 1e-12  # relative; a sample that is meant to fall on a time is met, not missed
+_ROUNDING = 1e-12  # relative; so that a sample taken at objective.after counts despite rounding errors
 
 
 @attrs.frozen
 class _Settled:
-    """What objectives over a whole simulation share: how often it is sampled, and from when on.
+    """Base of the objectives over a whole simulation.
 
     Attributes:
-        every: Seconds between samples; 0 samples after every step.
-        after: Seconds that the motion is given to settle: samples before this do not count.
+        every: Minimum seconds between samples; 0 samples after every step.
+        after: Seconds for the body to settle; samples before this time do not count.
     """
 
     unit: ClassVar[str] = "m"
@@ -34,34 +34,34 @@ class _Settled:
         """Return the index of the first sample that counts.
 
         Raises:
-            ConfigurationError: There is none, because the simulator does not heed ``Record.until``.
+            ConfigurationError: No sample counts, because the simulator ignores ``Record.until``.
         """
         first = int(np.searchsorted(outcome.times * (1 + _ROUNDING), self.after))
         if first == len(outcome.times):
             raise ConfigurationError(
-                f"no sample is taken at objective.after = {self.after} s or later: the last is at "
-                f"{outcome.times[-1]} s; set a smaller objective.after, or simulate for longer"
+                f"expected a sample at objective.after = {self.after} s or later, but the last sample is at "
+                f"{outcome.times[-1]} s; decrease objective.after or simulate for longer"
             )
         return first
 
 
 @attrs.frozen
 class Travel(_Settled):
-    """How far the centre of mass travels from the first sample that counts to the last, in metres.
+    """Distance that the center of mass travels from the first sample that counts to the last, in meters.
 
-    With ``along = "xy"``, *every* = 0 and *after* the time at which the actuation starts, this is the measure
-    of evosoro's locomotion (physics.md, section 11), in metres instead of voxels and without the height.
+    With ``along = "xy"``, *every* = 0, and *after* at the start of the actuation, this is evosoro's measure
+    of locomotion (docs/physics.md, section 11), in meters instead of voxels and without the height.
 
     Attributes:
-        along: ``xy`` is the horizontal distance, never negative; in a direction, what goes the other way is
-            negative.
+        along: ``xy`` is the horizontal distance, never negative; ``x``, ``-x``, ``y`` and ``-y`` are
+            directions, and travel in the opposite direction is negative.
     """
 
     along: Literal["xy", "x", "-x", "y", "-y"] = "xy"
 
     @property
     def record(self) -> Record:
-        """The centre of mass, to the end."""
+        """The center of mass until the end of the simulation."""
         return Record(tracks=("body",), every=self.every, until=self.after)
 
     def score(self, outcome: Outcome) -> float:
@@ -77,15 +77,15 @@ class Travel(_Settled):
 
 @attrs.frozen
 class FacePeak(_Settled):
-    """How far the centre of the free face gets in the yz plane from where it is at rest, in metres.
+    """Largest distance of the center of the free face from its rest position in the yz plane, in meters.
 
-    It is the largest distance over all samples that count, so never negative (paper.md, the preset
+    It is the maximum over all samples that count, and never negative (docs/experiment.md, the preset
     ``bending``).
     """
 
     @property
     def record(self) -> Record:
-        """The free face from before the first step to the end."""
+        """The free face, from before the first step until the end of the simulation."""
         return Record(tracks=("face",), every=self.every, initial=True, until=self.after)
 
     def score(self, outcome: Outcome) -> float:

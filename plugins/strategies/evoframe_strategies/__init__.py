@@ -1,6 +1,6 @@
 """The four collaboration strategies: ``fittest``, ``worst``, ``best-and-worst``, ``random``.
 
-A member with a diverged simulation is chosen only when no clean member is left.
+A member with a diverged simulation is chosen only if no clean member is left.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ Indices = NDArray[np.intp]
 
 @hookimpl
 def evoframe_strategies() -> Mapping[str, type[CollaborationStrategy]]:
-    """Offer the strategies of the paper's authors."""
+    """Register the strategies of the paper's authors."""
     return {"fittest": Fittest, "worst": Worst, "best-and-worst": BestAndWorst, "random": Random}
 
 
 @attrs.frozen
-class _Some:
-    """What the strategies share that choose *n* members."""
+class _ChooseN:
+    """Base of the strategies that choose *n* members."""
 
     n: int = attrs.field(default=2, validator=validators.ge(1))
 
     def size(self, n_members: int) -> int:
-        """Return *n*, if there are so many members."""
+        """Return *n*; require a population of at least *n* members."""
         return _available(self.n, n_members)
 
 
 @attrs.frozen
-class Fittest(_Some):
+class Fittest(_ChooseN):
     """The *n* fittest members, the fittest first (the strategy of the paper, arXiv 2510.24510).
 
     Attributes:
@@ -51,8 +51,8 @@ class Fittest(_Some):
 
 
 @attrs.frozen
-class Worst(_Some):
-    """The *n* least fit members, the worst first (a strategy of the paper's authors, arXiv 2510.24510).
+class Worst(_ChooseN):
+    """The *n* least fit members, the worst first (by the authors of arXiv 2510.24510).
 
     Attributes:
         n: Number of collaborators.
@@ -65,7 +65,7 @@ class Worst(_Some):
 
 @attrs.frozen
 class BestAndWorst:
-    """The *n* fittest members, then the *n* worst of the rest (a strategy of arXiv 2510.24510's authors).
+    """The *n* fittest members, then the *n* worst of the rest (by the authors of arXiv 2510.24510).
 
     Attributes:
         n: Half the number of collaborators.
@@ -74,7 +74,7 @@ class BestAndWorst:
     n: int = attrs.field(default=2, validator=validators.ge(1))
 
     def size(self, n_members: int) -> int:
-        """Return twice *n*, if there are so many members."""
+        """Return twice *n*; require a population of at least that many members."""
         return _available(self.n, n_members, times=2)
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> Indices:  # noqa: ARG002
@@ -86,15 +86,15 @@ class BestAndWorst:
 
 
 @attrs.frozen
-class Random(_Some):
-    """*n* members drawn at random, without repeats (a strategy of the authors of arXiv 2510.24510).
+class Random(_ChooseN):
+    """*n* members drawn at random, without repeats (by the authors of arXiv 2510.24510).
 
     Attributes:
         n: Number of collaborators.
     """
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> Indices:
-        """Return the indices of *members* in the order in which *rng* draws them."""
+        """Return indices of *members*, in the order in which *rng* draws them."""
         size = self.size(len(members))
         clean = _indices(index for index, member in enumerate(members) if not member.diverged)
         drawn = rng.choice(clean, size=min(size, len(clean)), replace=False)
@@ -105,14 +105,14 @@ class Random(_Some):
 
 
 def _available(n: int, n_members: int, times: int = 1) -> int:
-    """Return *n* *times* over, unless a population has fewer members."""
+    """Return *times* x *n*; require a population of at least that many members."""
     if n * times <= n_members:
         return n * times
-    asked = str(n) if times == 1 else f"{times} x {n}"
+    requested = str(n) if times == 1 else f"{times} x {n}"
     limit = n_members // times
     advice = f"; set collaboration.n to {limit} or less" if limit else ""
     raise ConfigurationError(
-        f"{asked} collaborators asked for, but the population has {n_members} members{advice}"
+        f"{requested} collaborators requested, but the population has {n_members} members{advice}"
     )
 
 
@@ -125,13 +125,13 @@ def _worst_first(members: Sequence[Member]) -> list[int]:
 
 
 def _ranked(members: Sequence[Member], sign: float) -> list[int]:
-    """Return the indices of *members* by *sign* times fitness, those that diverged last, ties by index."""
+    """Return the indices of *members* by *sign* times fitness, diverged members last, ties by index."""
     ranks = []
     for index, member in enumerate(members):
         if member.fitness is None:
-            raise ValueError(f"member {member.id} has no fitness yet, so it cannot be ranked")
+            raise ValueError(f"cannot rank member {member.id}: it has no fitness yet")
         if math.isnan(member.fitness):
-            raise ValueError(f"the fitness of member {member.id} is NaN, so it cannot be ranked")
+            raise ValueError(f"cannot rank member {member.id}: its fitness is NaN")
         ranks.append((member.diverged, sign * member.fitness, index))
     return [index for _, _, index in sorted(ranks)]
 

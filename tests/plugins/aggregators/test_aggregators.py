@@ -1,4 +1,5 @@
 import math
+import re
 import statistics
 import sys
 from collections.abc import Iterable
@@ -159,21 +160,21 @@ def test_any_shares_of_a_whole_are_weights(parts: list[int]) -> None:
         (range(20), [18.5, 16.5, 14.5, 12.5, 10.5, 8.5, 6.5, 4.5, 2.5, 0.5]),
     ],
 )
-def test_fold_averages_neighbours_of_the_sorted_scores(scores: list[float], folded: list[float]) -> None:
+def test_fold_averages_neighbors_of_the_sorted_scores(scores: list[float], folded: list[float]) -> None:
     assert aggregate(WeightedMean(fold=True), list(scores)) == aggregate(WeightedMean(), folded)
 
 
 @given(scores_of(ANY, PAPER_WEIGHTS))
-def test_fold_leaves_the_numbers_of_the_table_alone(scores: list[float]) -> None:
+def test_fold_changes_nothing_for_the_numbers_of_the_table(scores: list[float]) -> None:
     assert aggregate(WeightedMean(fold=True), scores) == aggregate(WeightedMean(), scores)
 
 
 @pytest.mark.parametrize("class_", [GeometricMean, HarmonicMean])
 class TestFloor:
-    def test_stands_for_what_is_not_positive(self, class_: type[Any]) -> None:
+    def test_replaces_scores_that_are_not_positive(self, class_: type[Any]) -> None:
         assert aggregate(class_(), [-0.01, 0.0, 0.004]) == aggregate(class_(), [1e-5, 1e-5, 0.004])
 
-    def test_leaves_small_positive_scores_alone(self, class_: type[Any]) -> None:
+    def test_does_not_change_small_positive_scores(self, class_: type[Any]) -> None:
         assert aggregate(class_(), [1e-6, 0.004]) < aggregate(class_(), [-1.0, 0.004])
 
     def test_raises_small_positive_scores_if_clip_is_set(self, class_: type[Any]) -> None:
@@ -193,7 +194,7 @@ class TestFloor:
 
     @pytest.mark.parametrize("floor", [0.0, -1e-5, math.inf, math.nan, 1e101])
     def test_is_a_positive_number(self, class_: type[Any], floor: float) -> None:
-        with pytest.raises(ValueError, match="'floor' must be"):
+        with pytest.raises(ValueError, match="'floor'"):
             class_(floor=floor)
 
 
@@ -208,9 +209,9 @@ def test_effective_scores_enclose_gm_and_hm(scores: list[float]) -> None:
 @pytest.mark.parametrize(
     "component", [ArithmeticMean(), WeightedMean(), GeometricMean(), HarmonicMean()], ids=str
 )
-class TestWhatIsNoScore:
-    def test_nothing_is_refused(self, component: Any) -> None:
-        with pytest.raises(ValueError, match=r"^there are no scores to aggregate$"):
+class TestInvalidScores:
+    def test_no_scores_are_refused(self, component: Any) -> None:
+        with pytest.raises(ValueError, match="found none"):
             aggregate(component, [])
 
     @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
@@ -218,60 +219,66 @@ class TestWhatIsNoScore:
     def test_infinity_and_nan_are_refused(self, component: Any, value: float, index: int) -> None:
         scores = [0.004, 0.004]
         scores[index] = value
-        with pytest.raises(ValueError, match=rf"^scores must be finite, found {value}$"):
+        with pytest.raises(ValueError, match=f"found {value}$"):
             aggregate(component, scores)
 
 
 def refusal(component: Any, n: int) -> str:
     with pytest.raises(ConfigurationError) as refused:
         component.check(n)
-    return str(refused.value)
+    return refused.value.problem
+
+
+def numbers(message: str) -> list[int]:
+    return [int(number) for number in re.findall(r"\d+", message)]
 
 
 @pytest.mark.parametrize(("name", "class_"), evoframe_aggregators().items())
 def test_no_collaborators_are_refused(name: str, class_: type[Any]) -> None:
-    assert refusal(class_(), 0) == f"{name} needs at least 1 collaborator, not 0"
+    message = refusal(class_(), 0)
+    assert message.startswith(f"{name} ")
+    assert numbers(message) == [1, 0]
 
 
 @pytest.mark.parametrize("n", [4, 6, 20])
-def test_wm_without_weights_says_what_there_is_and_what_to_do(n: int) -> None:
-    assert refusal(WeightedMean(), n) == (
-        f"wm has no weights for {n} collaborators (the paper gives 2, 3, 5, 7, 10); "
-        "set aggregator.weights or aggregator.fold = true"
-    )
+def test_wm_without_weights_names_the_paper_s_numbers_and_the_options_to_set(n: int) -> None:
+    message = refusal(WeightedMean(), n)
+    assert numbers(message) == [n, *PAPER_WEIGHTS]
+    assert "aggregator.weights" in message
+    assert "aggregator.fold = true" in message
 
 
 @pytest.mark.parametrize("component", [WeightedMean(), WeightedMean(fold=True)])
-def test_fold_is_advised_only_where_it_helps(component: Any) -> None:
-    assert refusal(component, 8) == (
-        "wm has no weights for 8 collaborators (the paper gives 2, 3, 5, 7, 10); set aggregator.weights"
-    )
-    assert "for 1 collaborator (" in refusal(component, 1)
+@pytest.mark.parametrize("n", [1, 8])
+def test_fold_is_suggested_only_where_it_helps(component: Any, n: int) -> None:
+    message = refusal(component, n)
+    assert numbers(message) == [n, *PAPER_WEIGHTS]
+    assert "aggregator.weights" in message
+    assert "fold" not in message
 
 
 def test_wm_names_both_numbers_if_there_are_too_few_weights() -> None:
-    assert refusal(WeightedMean(weights=(0.7, 0.3)), 5) == (
-        "wm has 2 weights for 5 collaborators; set aggregator.weights to one for each collaborator"
-    )
+    message = refusal(WeightedMean(weights=(0.7, 0.3)), 5)
+    assert numbers(message) == [2, 5]
+    assert "aggregator.weights" in message
 
 
 @pytest.mark.parametrize(
-    ("weights", "message"),
+    ("weights", "problem"),
     [
-        ((), "expected at least one weight"),
-        ((0.5, 0.4), "expected weights that sum to 1, these sum to 0.9"),
-        ((0.5, 0.5 + 1e-11), "expected weights that sum to 1, these sum to 1.00000000001"),
-        ((1.5, -0.5), "expected no negative weight, found -0.5"),
-        ((math.nan, 1.0), "expected no negative weight, found nan"),
-        ((math.inf, 0.0), "expected weights that sum to 1, these sum to inf"),
+        ((), "found none"),
+        ((0.5, 0.4), "sum 0.9"),
+        ((0.5, 0.5 + 1e-11), "sum 1.00000000001"),
+        ((1.5, -0.5), "non-negative .* -0.5"),
+        ((math.nan, 1.0), "non-negative .* nan"),
+        ((math.inf, 0.0), "sum inf"),
     ],
 )
-def test_wm_refuses_what_is_no_weighting(weights: tuple[float, ...], message: str) -> None:
-    with pytest.raises(ValueError, match=f"^{message}$"):
+def test_wm_refuses_invalid_weights(weights: tuple[float, ...], problem: str) -> None:
+    with pytest.raises(ValueError, match=f"{problem}$"):
         WeightedMean(weights=weights)
 
 
 def test_fold_and_weights_exclude_each_other() -> None:
-    with pytest.raises(ValueError, match=r"^fold works with the paper's weights only; set either") as refused:
+    with pytest.raises(ValueError, match=r"aggregator\.weights or aggregator\.fold$"):
         WeightedMean(weights=(0.6, 0.4), fold=True)
-    assert str(refused.value).endswith("aggregator.weights or aggregator.fold")

@@ -1,4 +1,4 @@
-"""The displacements: the laws of objectives, and what each of them measures."""
+"""The displacements: the laws of objectives, and the measure of each."""
 
 from __future__ import annotations
 
@@ -55,5 +55,5 @@ def test_signed_rise_changes_its_sign_when_time_is_reversed(before: list[float],
 
 
 def test_the_first_sample_comes_before_the_last() -> None:
-    with pytest.raises(ValueError, match="first must come before last, found first = 5 and last = 5"):
+    with pytest.raises(ValueError, match="found first = 5 and last = 5"):
         TipDz(first=5, last=5)

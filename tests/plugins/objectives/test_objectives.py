@@ -1,4 +1,4 @@
-"""The objectives that are offered, and their optional capabilities."""
+"""The names of the built-in objectives, and their optional capabilities."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from evoframe import Objective, SupportsUnit
 from evoframe_objectives import FacePeak, FaceYz, TipDz, TipYz, Travel, evoframe_objectives
 
 
-def test_they_are_offered_by_name() -> None:
+def test_they_are_registered_by_name() -> None:
     assert evoframe_objectives() == {
         "face-peak": FacePeak,
         "face-yz": FaceYz,
@@ -19,7 +19,7 @@ def test_they_are_offered_by_name() -> None:
 
 
 @pytest.mark.parametrize("objective", evoframe_objectives().values())
-def test_each_scores_in_metres(objective: type[Objective]) -> None:
+def test_each_scores_in_meters(objective: type[Objective]) -> None:
     component = objective()
     assert isinstance(component, SupportsUnit)
     assert component.unit == "m"

@@ -1,4 +1,5 @@
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -116,9 +117,9 @@ def test_random_needs_no_fitness() -> None:
 
 @pytest.mark.parametrize("strategy", [Fittest(), Worst(), BestAndWorst(n=1)])
 def test_a_ranking_needs_fitness(strategy: Any) -> None:
-    with pytest.raises(ValueError, match=r"^member 99 has no fitness yet, so it cannot be ranked$"):
+    with pytest.raises(ValueError, match=r"member 99: .*no fitness"):
         chosen(strategy, population(0.5, None, 0.4))
-    with pytest.raises(ValueError, match=r"^the fitness of member 98 is NaN, so it cannot be ranked$"):
+    with pytest.raises(ValueError, match=r"member 98: .*NaN"):
         chosen(strategy, population(0.5, 0.4, math.nan))
 
 
@@ -127,23 +128,22 @@ def test_a_population_too_small_is_refused_with_both_numbers(class_: type[Any]) 
     assert class_(n=25).size(25) == 25
     with pytest.raises(ConfigurationError) as refused:
         class_(n=30).size(25)
-    assert str(refused.value) == (
-        "30 collaborators asked for, but the population has 25 members; set collaboration.n to 25 or less"
-    )
+    assert re.findall(r"\d+ \w+", refused.value.problem)[:2] == ["30 collaborators", "25 members"]
+    assert "collaboration.n to 25 " in refused.value.problem
 
 
 def test_best_and_worst_takes_twice_n() -> None:
     assert BestAndWorst(n=12).size(25) == 24
     with pytest.raises(ConfigurationError) as refused:
         BestAndWorst(n=13).size(25)
-    assert str(refused.value) == (
-        "2 x 13 collaborators asked for, but the population has 25 members; set collaboration.n to 12 or less"
-    )
+    assert "2 x 13 collaborators" in refused.value.problem
+    assert "25 members" in refused.value.problem
+    assert "collaboration.n to 12 " in refused.value.problem
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
-def test_nothing_is_chosen_from_nobody(strategy: Any) -> None:
-    with pytest.raises(ConfigurationError, match=r"but the population has 0 members$"):
+def test_an_empty_population_is_refused_without_a_suggestion(strategy: Any) -> None:
+    with pytest.raises(ConfigurationError, match=r"0 members$"):
         chosen(strategy, [])
 
 
