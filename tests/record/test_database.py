@@ -149,7 +149,7 @@ class TestRefusal:
         self, opened: Open, directory: Path, statements: list[str], found: str
     ) -> None:
         changed(directory, *statements)
-        with pytest.raises(InputError, match=f"format 2, found {found};") as caught:
+        with pytest.raises(InputError, match=f"2, found {found};") as caught:
             opened().refuse_another(CONFIG)
         assert (caught.value.source, caught.value.key) == (str(directory / "run.db"), "meta.format")
 

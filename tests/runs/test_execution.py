@@ -167,11 +167,11 @@ class TestObservers:
 
 
 def test_a_stopped_run_keeps_all_turns_and_is_not_finished(toy_config: Load, tmp_path: Path) -> None:
-    asked: list[None] = []
+    calls: list[None] = []
 
     def stop() -> bool:
-        asked.append(None)
-        return len(asked) == 4
+        calls.append(None)
+        return len(calls) == 4
 
     execution = prepare(toy_config(), Plugins(), tmp_path / "run")
     assert not execution.play(stop).finished()

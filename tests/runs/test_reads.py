@@ -36,8 +36,8 @@ def config(toy_file: Path, plugins: Plugins) -> RunConfig:
 @pytest.fixture
 def left(config: RunConfig, tmp_path: Path) -> Path:
     """The directory of a run that was interrupted after some turns."""
-    asked = iter([False, False, False, True])
-    prepare(config, Plugins(), tmp_path / "run").play(lambda: next(asked))
+    stops = iter([False, False, False, True])
+    prepare(config, Plugins(), tmp_path / "run").play(lambda: next(stops))
     return tmp_path / "run"
 
 

@@ -22,9 +22,7 @@ def export_job(job: Job, format_: str) -> Export:
         InputError: The job has several designs, or the format cannot represent the design.
     """
     if len(job.designs) != 1:
-        raise InputError(
-            f"contains {len(job.designs)} designs, but only one can be exported", source=job.path
-        )
+        raise InputError(f"expected one design to export, found {len(job.designs)}", source=job.path)
     name, simulator = job.config.simulator.name, job.config.simulator.component
     if not isinstance(simulator, SupportsExport):
         raise ConfigurationError(f"'{name}' cannot export designs", source=job.path, key="simulator")

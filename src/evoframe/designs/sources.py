@@ -26,7 +26,7 @@ from evoframe.registry import Plugins
 __all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
 
 DEFAULT_PRESET = "paper"
-"""The preset for designs that come without settings."""
+"""The preset that provides the settings that a file lacks."""
 
 
 @attrs.frozen
@@ -125,7 +125,7 @@ def _of_file(path: Path, preset: str | None, overrides: Sequence[str | Layer], p
     config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
     simulator = config.simulator.component
     if not isinstance(simulator, SupportsReading):
-        problem = f"'{config.simulator.name}' cannot read files of designs"
+        problem = f"'{config.simulator.name}' cannot read files with designs"
         raise ConfigurationError(problem, source=path, key="simulator")
     labels, designs = zip(*simulator.read(path), strict=True)
     return Job(path, config, labels, designs)

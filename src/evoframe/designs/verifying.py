@@ -40,7 +40,7 @@ def verify(
 
     Args:
         source: A run or its directory, for its champion; or a file with designs.
-        preset: The preset for settings that the file lacks; a champion is simulated with all its settings.
+        preset: The preset for settings that the file lacks; for a champion, it replaces those of the run.
         workers: Overrides ``executor.workers``.
         plugins: The available plugins; by default all installed plugins.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
@@ -99,7 +99,7 @@ def verify_designs(
     """
     simulator = config.simulator.component
     if not isinstance(simulator, SupportsVariants):
-        problem = f"'{config.simulator.name}' offers no variants of a simulation to compare scores with"
+        problem = f"'{config.simulator.name}' offers no variants, so its scores cannot be verified"
         raise ConfigurationError(problem, key="simulator")
     workers = config.executor.component.start()
     try:

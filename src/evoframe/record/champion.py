@@ -107,7 +107,8 @@ def champion_from_json(text: str) -> Champion:
     if not isinstance(document, dict) or not document.keys() >= _CHAMPION_KEYS:
         raise InputError("not a champion; expected the champion.json of a run")
     if document["format"] is True or document["format"] != FORMAT:
-        raise InputError(f"this evoframe reads format {FORMAT}, found {document['format']!r}", key="format")
+        hint = "read it with the version of evoframe that wrote it"
+        raise InputError(f"expected {FORMAT}, found {document['format']!r}; {hint}", key="format")
     if not isinstance(document["score"], float) or not math.isfinite(document["score"]):
         raise InputError(f"expected a number, found {document['score']!r}", key="score")
     genomes = document.get("genomes", {})

@@ -108,12 +108,9 @@ class Database:
         formats = self._fetched("SELECT value FROM meta WHERE key = 'format'") if genuine else []
         if formats != [(str(RUN_FORMAT),)]:
             found = repr(formats[0][0]) if formats else "none"
-            raise InputError(
-                f"this evoframe reads format {RUN_FORMAT}, found {found}; read the run with the version of "
-                f"evoframe that wrote it (see [provenance] in {CONFIG_FILE})",
-                source=self.path,
-                key="meta.format",
-            )
+            hint = f"read it with the version of evoframe that wrote it (see [provenance] in {CONFIG_FILE})"
+            problem = f"expected {RUN_FORMAT}, found {found}; {hint}"
+            raise InputError(problem, source=self.path, key="meta.format")
         if not roles or set(statements) != set(expected):
             raise InputError(
                 f"damaged: the tables do not match the populations in {CONFIG_FILE}", source=self.path

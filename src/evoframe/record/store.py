@@ -111,7 +111,7 @@ class Store:
         tables = {}
         for name in (*CHAINED, *SINGLE):
             with self._writing():
-                none = self._database.execute(f'SELECT * FROM "{name}" LIMIT 0')  # noqa: S608 - one of ours
+                none = self._database.execute(f'SELECT * FROM "{name}" LIMIT 0')  # noqa: S608 - a constant name
             columns = tuple(column[0] for column in none.description)
             tables[name] = Table(columns, [row for _, row in sorted(self._rows.get(name, {}).items())])
         return tables

@@ -119,13 +119,11 @@ def verification_from_json(document: Any) -> Verification:
     if not isinstance(document, Mapping) or "variants" not in document:
         raise InputError("not a verification of evoframe")
     if document.get("format") is True or document.get("format") != _FORMAT:
-        raise InputError(
-            f"this evoframe reads format {_FORMAT}, found {document.get('format')!r}", key="format"
-        )
+        raise InputError(f"expected {_FORMAT}, found {document.get('format')!r}", key="format")
     try:
         rows = [_finding(row) for row in document["variants"]]
         if not rows or len(rows[0].scores) != 1:
-            raise ValueError("expected one score of the unchanged design")  # noqa: TRY301 - as all others
+            raise ValueError("expected one score of the unchanged design")  # noqa: TRY301 - wrapped below
         verification = Verification(rows[0].scores[0], tuple(rows[1:]), document["unit"], document["score"])
         same = verification.to_json() == document
     except ValueError as error:

@@ -141,7 +141,7 @@ def _log_turn(turn: Turn) -> None:
         _log.info("turn %d: new best pair, score %r", turn.index, turn.best_pair.score)
     for report in turn.reports:
         best, mean = report.best, report.mean
-        _log.debug("turn %d: %s: fitness: best %r, mean %r", turn.index, report.population, best, mean)
+        _log.debug("turn %d: %s: best fitness %r, mean %r", turn.index, report.population, best, mean)
 
 
 def _final_figures(coevolution: Coevolution) -> dict[str, Any]:
