@@ -1,4 +1,4 @@
-"""Designs of files and runs, simulated: their scores, and where their points are."""
+"""Simulation of designs of files and runs: scores and positions of points."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from evoframe_simulators import Vox
 Load = Callable[..., RunConfig]
 
 
-def test_a_champion_scores_what_it_scored_in_its_run(
+def test_a_champion_has_the_same_score_as_in_its_run(
     toy_config: Load, toy_plugins: Plugins, tmp_path: Path
 ) -> None:
     made = run(toy_config(), out=tmp_path / "run")
@@ -32,8 +32,9 @@ def test_a_design_that_cannot_be_simulated_is_named_by_its_file(
         raise InputError("has no voxels")
 
     monkeypatch.setattr(type(job.config.simulator.component), "simulate", refuses)
-    with pytest.raises(InputError, match=f"{made.directory}: has no voxels"):
+    with pytest.raises(InputError, match="has no voxels") as caught:
         simulate_job(job)
+    assert caught.value.source == str(made.directory)
 
 
 def test_a_trace_has_a_row_for_each_step_and_the_state_before_the_first() -> None:

@@ -1,8 +1,9 @@
-"""What a person names to have it simulated: which designs it stands for, and with which settings."""
+"""Sources of designs: the designs that they contain, and the settings to simulate them with."""
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ def plugins() -> Plugins:
 
 @pytest.fixture
 def varied(tmp_path: Path) -> str:
-    """A preset whose simulator has all that it may offer."""
+    """A preset whose simulator has all optional methods."""
     path = tmp_path / "varied.toml"
     simulator = 'name = "toy-varied"\ngain = 7.0'
     path.write_text(toys.CONFIGURATION.replace('name = "toy-product"', simulator))
@@ -65,11 +66,11 @@ class TestFile:
         assert gain_of(read_job(toy_path(WITH_SETTINGS), varied, [], plugins).config) == 2.0
         assert gain_of(read_job(toy_path(WITHOUT), varied, [], plugins).config) == 7.0
 
-    def test_yields_to_what_is_set(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
+    def test_is_overridden_by_settings(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
         job = read_job(toy_path(WITH_SETTINGS), varied, ["simulator.gain=5"], plugins)
         assert job.config.tables()["simulator"] == {"name": "toy-varied", "limit": 100.0, "gain": 5.0}
 
-    def test_is_asked_of_the_simulator_that_is_set(
+    def test_is_read_by_the_simulator_in_the_settings(
         self, plugins: Plugins, tmp_path: Path, toy_path: Written
     ) -> None:
         path = tmp_path / "plain.toml"
@@ -77,7 +78,7 @@ class TestFile:
         job = read_job(toy_path(WITH_SETTINGS), str(path), ["simulator=toy-varied"], plugins)
         assert gain_of(job.config) == 2.0
 
-    def test_with_what_is_only_valid_together_with_its_settings_is_read(
+    def test_completes_settings_that_are_invalid_without_it(
         self, plugins: Plugins, tmp_path: Path, toy_path: Written
     ) -> None:
         path = tmp_path / "narrow.toml"
@@ -92,27 +93,29 @@ class TestFile:
         path = toy_path(WITH_SETTINGS.replace("gain = 2.0", "gain = -1.0\nspeed = 3"))
         with pytest.raises(ConfigurationError) as caught:
             read_job(path, varied, [], plugins)
-        assert f"{path}: simulator.gain: must be >= 0, found -1.0" in str(caught.value)
-        assert f"{path}: simulator.speed: unknown option" in str(caught.value)
+        assert re.search(rf"{path}: simulator\.gain: .*-1\.0", str(caught.value))
+        assert f"{path}: simulator.speed: " in str(caught.value)
 
-    def test_whose_settings_cannot_deliver_the_record_says_so(
+    def test_whose_settings_cannot_deliver_the_record_is_refused(
         self, plugins: Plugins, varied: str, toy_path: Written
     ) -> None:
         path = toy_path(WITH_SETTINGS)
-        with pytest.raises(ConfigurationError, match=r"objective: toy-product ends at 1\.0 s, before 3\.0 s"):
+        with pytest.raises(ConfigurationError, match=r"objective: .*1\.0 .*3\.0"):
             read_job(path, varied, ['objective={name="toy-late", until=3.0}'], plugins)
 
-    def test_reports_all_faults_of_what_is_set(
+    def test_reports_all_faults_of_the_settings(
         self, plugins: Plugins, varied: str, toy_path: Written
     ) -> None:
-        with pytest.raises(ConfigurationError, match=r"2 faults(.|\n)*run\.seed(.|\n)*simulator: unknown"):
+        with pytest.raises(ConfigurationError, match=r"run\.seed(.|\n)*simulator: .*nothing"):
             read_job(toy_path(WITHOUT), varied, ["simulator=nothing", "run.seed=-1"], plugins)
 
-    def test_of_a_simulator_that_reads_none_is_refused(
+    def test_for_a_simulator_that_cannot_read_files_is_refused(
         self, plugins: Plugins, varied: str, toy_path: Written
     ) -> None:
-        with pytest.raises(ConfigurationError, match="the simulator 'toy-product' reads no files"):
-            read_job(toy_path(WITHOUT), varied, ["simulator=toy-product"], plugins)
+        path = toy_path(WITHOUT)
+        with pytest.raises(ConfigurationError, match="'toy-product'") as caught:
+            read_job(path, varied, ["simulator=toy-product"], plugins)
+        assert (caught.value.source, caught.value.key) == (str(path), "simulator")
 
 
 class TestRun:
@@ -137,14 +140,14 @@ class TestRun:
             (["objective=toy-late"], False),
         ],
     )
-    def test_has_its_score_only_as_long_as_simulation_and_objective_are_the_same(
+    def test_has_its_score_only_with_unchanged_simulator_and_objective(
         self, plugins: Plugins, finished: Run, overrides: list[str], same: bool
     ) -> None:
         expected = finished.champion().score if same else None
         for path in (finished.directory, finished.directory / "champion.json"):
             assert read_job(path, None, overrides, plugins, runs=True).score == expected
 
-    def test_is_simulated_as_a_preset_does_on_demand(
+    def test_is_simulated_with_a_given_preset(
         self, plugins: Plugins, finished: Run, varied: str, toy_file: Path
     ) -> None:
         for path in (finished.directory, finished.directory / "champion.json"):
@@ -152,23 +155,26 @@ class TestRun:
             assert job.config.simulator.name == "toy-product"
             assert job.score is None
 
-    def test_is_no_file(self, plugins: Plugins, finished: Run, varied: str) -> None:
-        with pytest.raises(InputError, match="cannot be read: Is a directory"):
+    def test_is_not_accepted_in_place_of_a_file(self, plugins: Plugins, finished: Run, varied: str) -> None:
+        with pytest.raises(InputError, match=r"directory; .*champion\.json$") as caught:
             read_job(finished.directory, varied, [], plugins)
+        assert caught.value.source == str(finished.directory)
 
     @pytest.mark.parametrize("name", ["nowhere", "nowhere.json", "no\0where", "n" * 5000])
-    def test_that_is_not_there_is_said(self, plugins: Plugins, tmp_path: Path, name: str) -> None:
-        with pytest.raises(InputError, match=r"(where|nnn).*: cannot be read: "):
+    def test_that_does_not_exist_is_refused(self, plugins: Plugins, tmp_path: Path, name: str) -> None:
+        with pytest.raises(InputError, match=r"(where|nnn).*: "):
             read_job(tmp_path / name, None, [], plugins, runs=True)
 
-    def test_that_is_another_directory_is_refused(self, plugins: Plugins, tmp_path: Path) -> None:
-        with pytest.raises(InputError, match="is no run's directory"):
+    def test_in_a_directory_without_a_run_is_refused(self, plugins: Plugins, tmp_path: Path) -> None:
+        with pytest.raises(InputError, match=r"config\.toml") as caught:
             read_job(tmp_path, None, [], plugins, runs=True)
+        assert caught.value.source == str(tmp_path)
 
-    def test_whose_champion_has_not_all_roles_is_refused(self, plugins: Plugins, finished: Run) -> None:
+    def test_whose_champion_lacks_a_role_is_refused(self, plugins: Plugins, finished: Run) -> None:
         path = finished.directory / "champion.json"
         document = json.loads(path.read_text())
         document["simulation"] = {"simulator": {"name": "toy-demanding"}, "objective": {"name": "toy-value"}}
         path.write_text(json.dumps(document))
-        with pytest.raises(InputError, match=r"champion\.json: design: has no morphology"):
+        with pytest.raises(InputError, match="morphology") as caught:
             read_job(path, None, [], plugins)
+        assert (caught.value.source, caught.value.key) == (str(path), "design")

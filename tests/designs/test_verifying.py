@@ -1,4 +1,4 @@
-"""Verification of designs: what is simulated, and what comes of it."""
+"""Verification of designs: the simulations and their findings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_design_is_simulated_unchanged_and_in_every_variant() -> None:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
-def test_workers_change_nothing(workers: int) -> None:
+def test_workers_do_not_change_the_result(workers: int) -> None:
     pool = Threads(workers=workers).start()
     alone = verify_design(toys.Varied(), toys.Value(), PAIR, toys.Here())
     assert verify_design(toys.Varied(), toys.Value(), PAIR, pool) == alone
@@ -40,7 +40,7 @@ def test_the_unit_is_that_of_the_objective() -> None:
     assert verify_design(toys.Varied(), toys.Late(), PAIR, toys.Here()).unit == "m"
 
 
-def test_a_variant_is_simulated_and_recorded_in_its_own_way() -> None:
+def test_a_variant_has_its_own_simulator_and_record() -> None:
     class Watched(toys.Varied):
         def variants(self, design: Design, record: Any) -> Any:
             return [Variant("later", Later(), design, Record(("value",), until=0.5))]
@@ -56,6 +56,6 @@ def test_a_variant_is_simulated_and_recorded_in_its_own_way() -> None:
     assert later.scores == (Score(0.5),)
 
 
-def test_only_who_offers_variants_can_verify() -> None:
+def test_only_simulators_with_variants_can_verify() -> None:
     assert isinstance(toys.Varied(), SupportsVariants)
     assert not isinstance(toys.Product(), SupportsVariants)

@@ -1,4 +1,4 @@
-"""What the documents and examples say is true."""
+"""The documents and examples agree with the program."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_the_table_of_components_is_complete() -> None:
     assert listed == {key: plugins.names(kind) for key, kind in kinds.items()}
 
 
-def test_links_lead_somewhere() -> None:
+def test_links_lead_to_existing_files() -> None:
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
         for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", page.read_text()):
             assert (page.parent / target).exists(), f"{page.name}: {target}"

@@ -1,4 +1,4 @@
-"""The published experiment with its real components, shortened; the whole of it is `make run`."""
+"""The published experiment with its real components, shortened; `make run` runs the whole experiment."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class TestRecord:
         shell[1:-1, 1:-1, 1:-1] = 1
         assert (shell == 1).all()
 
-    def test_the_champion_is_verified_and_can_be_read_by_the_original_engine(self, short: Run) -> None:
+    def test_the_champion_is_verified_and_exported_for_the_original_engine(self, short: Run) -> None:
         verification = short.verification()
         assert verification is not None
         assert verification.unchanged.value == short.champion().score
@@ -99,12 +99,12 @@ class TestRecord:
 
 
 class TestDeterminism:
-    def test_twice_in_a_row_gives_the_same(self, short: Run, tmp_path: Path) -> None:
+    def test_a_second_run_gives_the_same_result(self, short: Run, tmp_path: Path) -> None:
         again = evoframe.run("paper", out=tmp_path / "again", run={"generations": 3})
         assert_same_result(short.directory, again.directory)
 
     @pytest.mark.parametrize(("workers", "hash_seed"), [("1", "0"), ("2", "1"), ("3", "12345")])
-    def test_workers_and_hash_seed_change_nothing(
+    def test_workers_and_hash_seed_do_not_change_the_result(
         self, short: Run, tmp_path: Path, workers: str, hash_seed: str
     ) -> None:
         directory = tmp_path / "run"
@@ -162,15 +162,15 @@ class TestSwaps:
         assert finished.config["aggregator"]["weights"] == [0.7, 0.3]
 
 
-def numpys_state() -> dict[str, Any]:
-    """Return the state of the global stream, with a list in the place of its array."""
+def numpy_state() -> dict[str, Any]:
+    """Return the state of numpy's global stream, with its array as a list."""
     found = np.random.get_state(legacy=False)  # noqa: NPY002
     return {**found, "state": {**found["state"], "key": found["state"]["key"].tolist()}}
 
 
-def test_own_random_state_is_left_alone(tmp_path: Path) -> None:
+def test_the_global_random_states_are_not_changed(tmp_path: Path) -> None:
     random.seed(5)
-    np.random.seed(5)  # noqa: NPY002 - the global stream is what must not move
-    before = random.getstate(), numpys_state()
+    np.random.seed(5)  # noqa: NPY002 - the global stream must not change
+    before = random.getstate(), numpy_state()
     evoframe.run("quick", out=tmp_path / "run", run={"generations": 1})
-    assert (random.getstate(), numpys_state()) == before
+    assert (random.getstate(), numpy_state()) == before

@@ -1,4 +1,4 @@
-"""The presets beside the paper's: a bar that bends, and a body that goes. Each measures what it says."""
+"""The presets other than the paper's, a bending bar and a crawling body, measure bending and locomotion."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def score(simulator: Any, config: RunConfig, design: Design) -> float:
 
 
 def variants(config: RunConfig, design: Design, *names: str) -> list[float]:
-    """Score the re-simulations of these names."""
+    """Return the scores of the variants with these names."""
     simulator: Any = config.simulator.component
     found = {each.name: each for each in simulator.variants(design, config.objective.component.record)}
     return [score(found[name].simulator, config, found[name].design) for name in names]
@@ -64,13 +64,13 @@ def test_a_bimorph_bends_by_more_than_a_voxel_and_not_by_collision(bend: RunConf
 
 
 def wave(canvas: tuple[int, int, int]) -> NDArray[np.float64]:
-    """Phase offsets, radians, that run along x once."""
+    """Return phase offsets, radians, of one wave along x."""
     turns = np.arange(canvas[0]) / canvas[0]
     offsets: NDArray[np.float64] = np.zeros(canvas) + 2 * np.pi * turns[:, None, None]
     return offsets
 
 
-def test_a_wave_crawls_the_other_way_when_it_is_turned_round(crawl: RunConfig) -> None:
+def test_a_reversed_wave_crawls_in_the_opposite_direction(crawl: RunConfig) -> None:
     canvas = canvas_of(crawl)
     body = np.full(canvas, CONTRACTILE, np.uint8)
     forth = Design({MORPHOLOGY: body, CONTROLLER: wave(canvas)})

@@ -1,4 +1,4 @@
-"""The champion's document: read back exactly, and nothing else is taken for it."""
+"""The champion's document is read back exactly, and any other document is refused."""
 
 from __future__ import annotations
 
@@ -27,6 +27,11 @@ from evoframe.record.champion import (
 Load = Callable[..., RunConfig]
 
 
+def with_array(**array: Any) -> Callable[[dict[str, Any]], dict[str, Any]]:
+    """Return a change of a champion's document that replaces its design."""
+    return lambda document: {**document, "design": {"a": array}}
+
+
 class TestChampionFile:
     @pytest.fixture
     def champion(self, toy_config: Load, tmp_path: Path) -> Path:
@@ -44,43 +49,35 @@ class TestChampionFile:
         assert all((again.roles[role] == array).all() for role, array in design.roles.items())
 
     @pytest.mark.parametrize(
-        ("change", "message"),
+        ("change", "key", "data"),
         [
-            (lambda d: [d], "this JSON is no champion"),
-            (lambda d: {}, "this JSON is no champion"),
-            (lambda d: {**d, "format": 2}, "format 2, but this evoframe reads format 1"),
-            (lambda d: {**d, "score": "high"}, "score: expected a number, found 'high'"),
-            (lambda d: {**d, "design": []}, "design: not as evoframe writes it"),
-            (
-                lambda d: {**d, "design": {"a": {"dtype": "object", "shape": [1], "values": [1]}}},
-                "unknown dtype",
-            ),
-            (
-                lambda d: {**d, "design": {"a": {"dtype": "float64", "shape": [2], "values": [1.0]}}},
-                "cannot reshape",
-            ),
-            (
-                lambda d: {**d, "design": {"a": {"dtype": "uint8", "shape": [1], "values": [-5]}}},
-                "design: not as",
-            ),
-            (
-                lambda d: {**d, "design": {"a": {"dtype": "float64", "shape": [1], "values": ["x"]}}},
-                "design: not as",
-            ),
+            (lambda d: [d], "", ""),
+            (lambda d: {}, "", ""),
+            (lambda d: {**d, "format": 2}, "format", "2"),
+            (lambda d: {**d, "score": "high"}, "score", "'high'"),
+            (lambda d: {**d, "design": []}, "design", "[]"),
+            (with_array(dtype="object", shape=[1], values=[1]), "design.a", "'object'"),
+            (with_array(dtype="float64", shape=[2], values=[1.0]), "design.a", "(2,)"),
+            (with_array(dtype="uint8", shape=[1], values=[-5]), "design.a", "uint8"),
+            (with_array(dtype="float64", shape=[1], values=["x"]), "design.a", "float64"),
+            (with_array(dtype="float64", values=[1.0]), "design.a", "'shape'"),
         ],
     )
     def test_that_was_changed_is_refused_with_its_name(
-        self, champion: Path, change: Callable[[Any], Any], message: str
+        self, champion: Path, change: Callable[[Any], Any], key: str, data: str
     ) -> None:
         champion.write_text(json.dumps(change(json.loads(champion.read_text()))))
-        with pytest.raises(InputError, match=rf"champion\.json: .*{message}"):
+        with pytest.raises(InputError) as caught:
             read_champion(champion)
+        assert (caught.value.source, caught.value.key) == (str(champion), key)
+        assert data in caught.value.problem
 
     @pytest.mark.parametrize("text", ["", "{", "nope", "[" * 100_000])
-    def test_that_is_no_json_is_refused(self, champion: Path, text: str) -> None:
+    def test_that_is_not_json_is_refused(self, champion: Path, text: str) -> None:
         champion.write_text(text)
-        with pytest.raises(InputError, match="not valid JSON"):
+        with pytest.raises(InputError, match="JSON") as caught:
             read_champion(champion)
+        assert (caught.value.source, caught.value.key) == (str(champion), "")
 
 
 @given(
@@ -96,15 +93,15 @@ def test_any_design_of_numbers_survives_its_json(array: NDArray[Any]) -> None:
     assert (again.dtype, again.tobytes()) == (array.dtype, array.tobytes())
 
 
-def test_a_design_that_is_no_array_of_numbers_is_refused_when_it_is_recorded() -> None:
-    with pytest.raises(RunError, match="the design's role 'a' is no array of finite numbers, but float64"):
-        design_to_json(Design({"a": np.array([np.nan])}))
-    with pytest.raises(RunError, match="but complex128"):
-        design_to_json(Design({"a": np.array([1j])}))
+@pytest.mark.parametrize(("value", "dtype"), [(np.nan, "float64"), (1j, "complex128")])
+def test_a_design_that_is_not_an_array_of_finite_numbers_is_not_saved(value: complex, dtype: str) -> None:
+    with pytest.raises(RunError, match=dtype) as caught:
+        design_to_json(Design({"a": np.array([value])}))
+    assert caught.value.key == "design.a"
 
 
 @given(best_pairs())
-def test_a_champion_is_what_its_document_says(pair: BestPair) -> None:
+def test_a_champion_equals_its_document(pair: BestPair) -> None:
     simulation = {"simulator": {"name": "toy-product", "limit": 2.5}, "objective": {"name": "toy-value"}}
     champion = champion_from_json(json_text(champion_document(pair, simulation)))
     assert (champion.score, champion.genomes, champion.simulation) == (pair.score, pair.genomes, simulation)
@@ -112,31 +109,28 @@ def test_a_champion_is_what_its_document_says(pair: BestPair) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given_array", "message"),
+    ("given_array", "data"),
     [
-        ({"dtype": "uint8", "shape": [1], "values": [256]}, "a: uint8 cannot hold|out of bounds"),
-        ({"dtype": "float32", "shape": [1], "values": [0.1]}, "a: float32 cannot hold the values"),
-        ({"dtype": "float64", "shape": [1], "values": [1]}, "a: expected values of type float64"),
-        ({"dtype": "int64", "shape": [1], "values": [True]}, "a: expected values of type int64"),
-        ({"dtype": "int64", "shape": [-1], "values": [1, 2]}, "a: expected the lengths of axes"),
-        ({"dtype": "int64", "shape": [True], "values": [1]}, "a: expected the lengths of axes"),
+        ({"dtype": "uint8", "shape": [1], "values": [256]}, "uint8"),
+        ({"dtype": "float32", "shape": [1], "values": [0.1]}, "float32"),
+        ({"dtype": "float64", "shape": [1], "values": [1]}, "float64"),
+        ({"dtype": "int64", "shape": [1], "values": [True]}, "int64"),
+        ({"dtype": "int64", "shape": [-1], "values": [1, 2]}, r"\[-1\]"),
+        ({"dtype": "int64", "shape": [True], "values": [1]}, r"\[True\]"),
     ],
 )
-def test_nothing_is_rounded_wrapped_or_guessed(given_array: dict[str, Any], message: str) -> None:
-    with pytest.raises((ValueError, OverflowError), match=message):
+def test_nothing_is_rounded_wrapped_or_guessed(given_array: dict[str, Any], data: str) -> None:
+    with pytest.raises(InputError, match=data) as caught:
         design_from_json({"a": given_array})
+    assert caught.value.key == "a"
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"format": True}, "format True, but"),
-        ({"score": 1}, "score: expected a number"),
-        ({"genomes": []}, "genomes: expected a table"),
-    ],
+    ("key", "value"), [("format", True), ("score", 1), ("genomes", []), ("simulation", None)]
 )
-def test_a_document_with_other_kinds_of_values_is_no_champion(change: dict[str, Any], message: str) -> None:
+def test_a_document_with_values_of_wrong_types_is_not_a_champion(key: str, value: Any) -> None:
     pair = BestPair(0, 0.5, {}, {}, Design({}))
-    document = {**champion_document(pair, {}), **change}
-    with pytest.raises(ValueError, match=message):
-        champion_from_json(json.dumps(document))
+    with pytest.raises(InputError) as caught:
+        champion_from_json(json.dumps({**champion_document(pair, {}), key: value}))
+    assert caught.value.key == key
+    assert repr(value) in caught.value.problem

@@ -1,4 +1,4 @@
-"""Checksums: of what was saved, however it came, and of nothing else."""
+"""Checksums depend on the saved rows and on nothing else."""
 
 from __future__ import annotations
 
@@ -48,7 +48,9 @@ def test_other_rows_have_another_checksum(
 
 
 @given(rows)
-def test_what_is_read_has_the_checksum_with_which_it_was_written(written: list[tuple[object, ...]]) -> None:
+def test_rows_that_are_read_have_the_checksum_with_which_they_were_written(
+    written: list[tuple[object, ...]],
+) -> None:
     grown = Checksums()
     grown.add("pairs", written)
     assert dict(Checksums.of_rows("pairs", written)) == dict([grown.of("pairs")])
@@ -58,7 +60,7 @@ def test_what_is_read_has_the_checksum_with_which_it_was_written(written: list[t
     )
 
 
-def test_tables_grow_apart() -> None:
+def test_tables_have_independent_checksums() -> None:
     grown = Checksums()
     before = grown.of("turns")
     grown.add("pairs", [(1, 2.5)])
@@ -66,18 +68,18 @@ def test_tables_grow_apart() -> None:
     assert grown.of("pairs")[1] != before[1]
 
 
-def test_a_row_that_is_replaced_is_named_by_its_key() -> None:
+def test_a_replaceable_row_is_named_by_its_key() -> None:
     assert Checksums.of_row("state", ("loop", 3, "{}"))[0] == "state:loop"
     assert Checksums.of_row("state", ("loop", 3, "{}")) != Checksums.of_row("state", ("loop", 4, "{}"))
 
 
-def test_a_table_of_somebody_else_has_none() -> None:
+def test_an_unknown_table_has_no_checksum() -> None:
     assert list(Checksums.of_rows("notes", [(1,)])) == []
     assert not set(CHAINED) & set(SINGLE)
 
 
 @pytest.mark.parametrize("table", ["pairs", "state"])
-def test_the_bytes_of_a_damaged_database_have_one_too(table: str) -> None:
+def test_the_bytes_of_a_damaged_database_have_a_checksum_too(table: str) -> None:
     [(_, damaged)] = Checksums.of_rows(table, [(b"\xff", 1)])
-    [(_, sound)] = Checksums.of_rows(table, [("x", 1)])
-    assert damaged != sound
+    [(_, intact)] = Checksums.of_rows(table, [("x", 1)])
+    assert damaged != intact

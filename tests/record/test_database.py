@@ -1,4 +1,4 @@
-"""A database that is read: of one moment, of one run, and of nobody's making but evoframe's."""
+"""Reading of a database: one snapshot, one run, and only databases written by evoframe."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def opened(directory: Path) -> Iterator[Open]:
     with contextlib.ExitStack() as stack:
 
         def open_it() -> Database:
-            database = Database.opened(directory / "run.db")
+            database = Database.open(directory / "run.db")
             stack.callback(database.close)
             return database
 
@@ -52,9 +52,9 @@ def turn(index: int) -> Turn:
 
 def test_a_table_is_read_with_its_columns_in_the_order_of_its_keys(opened: Open, directory: Path) -> None:
     store = reopened(directory)
-    with contextlib.closing(Database.opened(directory / "run.db")) as database:
+    with contextlib.closing(Database.open(directory / "run.db")) as database:
         saved = {name: database.read(name).rows for name in (*CHAINED, *SINGLE)}
-    store.go_on(saved, [])
+    store.resume(saved, [])
     store.save(turn(1), {"loop": {"turn": 1}})
     store.close()
     table = opened().read("workload")
@@ -63,111 +63,117 @@ def test_a_table_is_read_with_its_columns_in_the_order_of_its_keys(opened: Open,
     assert table.records()[1] == {"turn": 1, "pairs": 1, "simulations": 1, "seconds": 0.25}
 
 
-def test_an_unknown_table_is_answered_with_those_that_there_are(opened: Open) -> None:
-    with pytest.raises(
-        InputError, match=r"has no table 'turn'; tables: best_pairs, checksums, individuals, "
-    ):
+def test_the_error_for_an_unknown_table_lists_the_tables(opened: Open, directory: Path) -> None:
+    with pytest.raises(InputError, match=r"'turn'.*: best_pairs, checksums, individuals, ") as caught:
         opened().read("turn")
+    assert caught.value.source == str(directory / "run.db")
 
 
-class TestMoment:
-    """Of a run that goes on meanwhile."""
+class TestSnapshot:
+    """The snapshot of a run that is being written."""
 
     @pytest.fixture
     def store(self, tmp_path: Path) -> Iterator[Store]:
-        store = begun(tmp_path / "going-on")
+        store = begun(tmp_path / "playing")
         store.save(turn(0), {"loop": 0})
         yield store
         store.close()
 
     @pytest.fixture
     def database(self, store: Store) -> Iterator[Database]:
-        with contextlib.closing(Database.opened(store.directory / "run.db")) as database:
+        with contextlib.closing(Database.open(store.directory / "run.db")) as database:
             yield database
 
-    def test_is_that_of_the_first_look(self, store: Store, database: Database) -> None:
+    def test_is_that_of_the_first_read(self, store: Store, database: Database) -> None:
         assert len(database.read("workload").rows) == 1
         store.save(turn(1), {"loop": 1})
         assert len(database.read("workload").rows) == 1
         assert database.read("state").rows == [("loop", 0, "0")]
 
-    def test_is_renewed_on_demand_and_whether_anything_happened_is_said(
-        self, store: Store, database: Database
-    ) -> None:
+    def test_is_refreshed_on_demand(self, store: Store, database: Database) -> None:
         assert database.tables()
-        assert not database.renewed()
+        assert not database.refresh()
         store.save(turn(1), {"loop": 1})
-        assert database.renewed()
-        assert not database.renewed()
+        assert database.refresh()
+        assert not database.refresh()
         assert len(database.read("workload").rows) == 2
 
 
 class TestRefusal:
     @pytest.mark.parametrize(
-        ("statement", "message"),
+        "statement",
         [
-            ("UPDATE workload SET pairs = 2", "is damaged: workload is not what was saved"),
-            ("DELETE FROM workload", "is damaged: workload is not what was saved"),
-            ("DELETE FROM checksums WHERE name = 'workload'", "is damaged: workload is not what was saved"),
-            ("INSERT INTO workload VALUES (9, 1, 1, 0.5)", "is damaged: workload is not what was saved"),
+            "UPDATE workload SET pairs = 2",
+            "DELETE FROM workload",
+            "DELETE FROM checksums WHERE name = 'workload'",
+            "INSERT INTO workload VALUES (9, 1, 1, 0.5)",
         ],
     )
-    def test_of_rows_that_are_not_those_that_were_saved(
-        self, opened: Open, directory: Path, statement: str, message: str
+    def test_of_rows_that_differ_from_the_saved_ones(
+        self, opened: Open, directory: Path, statement: str
     ) -> None:
         changed(directory, statement)
-        with pytest.raises(InputError, match=message):
+        with pytest.raises(InputError, match="checksum") as caught:
             opened().read("workload")
+        assert (caught.value.source, caught.value.key) == (str(directory / "run.db"), "workload")
 
     def test_of_one_row_names_it(self, opened: Open, directory: Path) -> None:
         changed(directory, "UPDATE state SET state = '{}'")
-        with pytest.raises(InputError, match=r"is damaged: state:loop is not what was saved"):
+        with pytest.raises(InputError, match="checksum") as caught:
             opened().read("state")
+        assert caught.value.key == "state:loop"
 
-    def test_of_values_of_other_types_whatever_their_checksums_say(
-        self, opened: Open, directory: Path
-    ) -> None:
+    def test_of_values_of_wrong_types_with_valid_checksums(self, opened: Open, directory: Path) -> None:
         rewritten(directory, "UPDATE workload SET seconds = 'long'")
-        with pytest.raises(
-            InputError, match=r"workload has a row with values of other types: \(0, 1, 1, 'long'\)"
-        ):
+        with pytest.raises(InputError, match=r"types: \(0, 1, 1, 'long'\)") as caught:
             opened().read("workload")
+        assert caught.value.key == "workload"
 
     @pytest.mark.parametrize(
-        ("statements", "message"),
+        "statement", ["DROP TABLE pairs", "CREATE TABLE more (x)", "CREATE VIEW more AS SELECT 1"]
+    )
+    def test_of_a_database_with_different_tables(self, opened: Open, directory: Path, statement: str) -> None:
+        changed(directory, statement)
+        with pytest.raises(InputError, match=r"config\.toml") as caught:
+            opened().refuse_another(CONFIG)
+        assert (caught.value.source, caught.value.key) == (str(directory / "run.db"), "")
+
+    @pytest.mark.parametrize(
+        ("statements", "found"),
         [
-            (["DROP TABLE pairs"], "its tables are not those of a run with this config.toml"),
-            (["CREATE TABLE more (x)"], "its tables are not those of a run"),
-            (["CREATE VIEW more AS SELECT 1"], "its tables are not those of a run"),
-            (
-                ["DROP TABLE meta", "CREATE VIEW meta AS SELECT 'format' AS key, '2' AS value"],
-                "has no format",
-            ),
-            (["UPDATE meta SET value = '1' WHERE key = 'format'"], "has the format '1', but this evoframe"),
+            (["DROP TABLE meta", "CREATE VIEW meta AS SELECT 'format' AS key, '2' AS value"], "none"),
+            (["UPDATE meta SET value = '1' WHERE key = 'format'"], "'1'"),
         ],
     )
-    def test_of_the_database_of_something_else(
-        self, opened: Open, directory: Path, statements: list[str], message: str
+    def test_of_a_different_format(
+        self, opened: Open, directory: Path, statements: list[str], found: str
     ) -> None:
         changed(directory, *statements)
-        with pytest.raises(InputError, match=message):
+        with pytest.raises(InputError, match=f"2, found {found};") as caught:
             opened().refuse_another(CONFIG)
+        assert (caught.value.source, caught.value.key) == (str(directory / "run.db"), "meta.format")
 
     @pytest.mark.parametrize("populations", [{"a": {}}, {"a": {}, "c": {}}, {"b": {}, "a": {}}])
     def test_of_the_database_of_other_populations(self, opened: Open, populations: dict[str, Any]) -> None:
         opened().refuse_another(CONFIG)
-        with pytest.raises(InputError, match="its tables are not those of a run"):
+        with pytest.raises(InputError) as caught:
             opened().refuse_another({**CONFIG, "populations": populations})
+        assert caught.value.key == ""
 
     @pytest.mark.parametrize("populations", [None, [], {'a" INTEGER); --': {}}])
-    def test_of_populations_that_could_be_no_columns(self, opened: Open, populations: Any) -> None:
-        with pytest.raises(InputError, match=r"this evoframe reads format|its tables are not those of a run"):
+    def test_of_populations_that_cannot_be_columns(
+        self, opened: Open, directory: Path, populations: Any
+    ) -> None:
+        with pytest.raises(InputError) as caught:
             opened().refuse_another({**CONFIG, "populations": populations})
+        assert caught.value.source == str(directory / "run.db")
 
-    def test_of_what_is_no_database(self, directory: Path, opened: Open) -> None:
+    def test_of_a_file_that_is_not_a_database(self, directory: Path, opened: Open) -> None:
         (directory / "run.db").write_bytes(b"no database" * 100)
-        with pytest.raises(InputError, match=r"run\.db: cannot be read: file is not a database"):
+        with pytest.raises(InputError) as caught:
             opened().tables()
+        assert caught.value.source == str(directory / "run.db")
+        assert isinstance(caught.value.__cause__, sqlite3.DatabaseError)
 
 
 def test_nothing_is_written_and_nothing_attached(opened: Open, directory: Path) -> None:
@@ -178,11 +184,11 @@ def test_nothing_is_written_and_nothing_attached(opened: Open, directory: Path) 
         connection.execute("ATTACH ':memory:' AS other")
 
 
-def test_a_statement_without_end_is_stopped(opened: Open) -> None:
+def test_an_endless_statement_is_interrupted(opened: Open) -> None:
     endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT max(x) FROM n"
-    with pytest.raises(InputError, match="cannot be read: interrupted"):
+    with pytest.raises(InputError, match="interrupted"):
         opened()._fetched(endless)
 
 
-def test_a_sound_database_has_no_damage(opened: Open) -> None:
+def test_an_intact_database_has_no_damage(opened: Open) -> None:
     assert opened().damage() == []

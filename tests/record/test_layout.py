@@ -1,4 +1,4 @@
-"""The tables of a run's database: as they are stated, with a column for each population."""
+"""The tables of a run's database, with a column for each population."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evoframe.record.layout import schema
 
 
 def columns(roles: list[str]) -> dict[str, list[str]]:
-    """Return the tables that SQLite makes of the statements, and their columns."""
+    """Return the tables that SQLite creates from the statements, and their columns."""
     with contextlib.closing(sqlite3.connect(":memory:")) as database:
         for statement in schema(roles):
             database.execute(statement)
@@ -23,7 +23,7 @@ def columns(roles: list[str]) -> dict[str, list[str]]:
         }
 
 
-def test_every_table_has_checksums_but_that_of_the_checksums() -> None:
+def test_every_table_but_that_of_the_checksums_has_checksums() -> None:
     assert set(columns(["a", "b"])) == {*CHAINED, *SINGLE, "checksums"}
 
 
@@ -34,8 +34,8 @@ def test_every_population_has_a_column_of_pairs_in_their_order(roles: list[str])
     assert columns(roles)["pairs"] == ["turn", "pair", *roles, "score", "diverged_at"]
 
 
-def test_statements_are_those_that_sqlite_keeps() -> None:
-    """Or a database could not be compared with them to the letter."""
+def test_sqlite_keeps_the_statements_unchanged() -> None:
+    """This allows comparing a database with them character for character."""
     with contextlib.closing(sqlite3.connect(":memory:")) as database:
         for statement in schema(["a", "b"]):
             database.execute(statement)

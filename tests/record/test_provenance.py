@@ -1,4 +1,4 @@
-"""What a run was made with: the same each time, in words that a file can hold."""
+"""The provenance of a run is reproducible, and can be written to a file."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Load = Callable[..., RunConfig]
 
 
 @attrs.frozen
-class Telling(toys.Product):
-    """Names its library."""
+class Versioned(toys.Product):
+    """A simulator that reports the version of its library."""
 
     version: str = "1.2"
 
@@ -29,11 +29,11 @@ class Telling(toys.Product):
 
 def simulated_by(config: RunConfig, simulator: toys.Product, version: str = "1.0") -> RunConfig:
     return attrs.evolve(
-        config, simulator=Chosen("toy-telling", simulator, Source("toy-box", version, "toys"))
+        config, simulator=Chosen("toy-versioned", simulator, Source("toy-box", version, "toys"))
     )
 
 
-def test_names_the_versions_and_where_each_component_is_from(toy_config: Load) -> None:
+def test_has_the_versions_and_the_source_of_each_component(toy_config: Load) -> None:
     found = provenance_of(toy_config())
     assert found["evoframe"] == evoframe.__version__
     assert found["machine"] == platform.machine()
@@ -43,19 +43,19 @@ def test_names_the_versions_and_where_each_component_is_from(toy_config: Load) -
     )
 
 
-def test_is_the_same_each_time_and_when_it_was_read(toy_config: Load) -> None:
+def test_is_the_same_each_time_and_after_it_was_read(toy_config: Load) -> None:
     found = provenance_of(toy_config())
     assert provenance_of(toy_config()) == found == as_read(found)
 
 
-def test_has_what_components_add(toy_config: Load) -> None:
-    config = simulated_by(toy_config(), Telling())
+def test_has_the_entries_of_components(toy_config: Load) -> None:
+    config = simulated_by(toy_config(), Versioned())
     assert provenance_of(config)["libraries"]["libtoy"] == "1.2"
 
 
 def test_another_version_of_a_plugin_or_of_its_library_is_a_difference(toy_config: Load) -> None:
-    then = provenance_of(simulated_by(toy_config(), Telling()))
-    now = provenance_of(simulated_by(toy_config(), Telling(version="1.3"), "2.0"))
+    then = provenance_of(simulated_by(toy_config(), Versioned()))
+    now = provenance_of(simulated_by(toy_config(), Versioned(version="1.3"), "2.0"))
     assert differences(then, now) == [
         "libraries.libtoy: '1.2' then, '1.3' now",
         "components.simulator: \"'toys' of toy-box 1.0\" then, \"'toys' of toy-box 2.0\" now",

@@ -1,4 +1,4 @@
-"""The figures of a verification, and its JSON."""
+"""The figures of a verification and its JSON."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 import toys
 from hypothesis import given, strategies as st
 
-from evoframe import Design, Finding, Score, Verification
+from evoframe import Design, Finding, InputError, Score, Verification
 from evoframe.designs.verifying import verify_design
 from evoframe.record.verification import verification_from_json
 
@@ -50,12 +50,12 @@ class TestFigures:
             assert finding.values[0] <= finding.median <= finding.values[-1]
 
     @given(verifications)
-    def test_the_unchanged_design_has_all_of_its_score(self, verification: Verification) -> None:
+    def test_the_share_of_the_unchanged_design_is_one(self, verification: Verification) -> None:
         share = verification.share(verification.rows[0])
         assert share == (1.0 if verification.unchanged.value else None)
 
     @given(verifications)
-    def test_a_share_is_a_finite_part_of_the_unchanged_score(self, verification: Verification) -> None:
+    def test_a_share_is_a_finite_fraction_of_the_unchanged_score(self, verification: Verification) -> None:
         for finding in verification.findings:
             share = verification.share(finding)
             if share is not None:
@@ -66,7 +66,7 @@ class TestFigures:
                 assert math.isclose(share * verification.unchanged.value, expected, abs_tol=1e-200)
 
     @pytest.mark.parametrize("unchanged", [Score(0.0), Score(None, 3), Score(5e-324)])
-    def test_there_is_no_share_of_nothing(self, unchanged: Score) -> None:
+    def test_there_is_no_share_of_a_missing_or_zero_score(self, unchanged: Score) -> None:
         verification = Verification(unchanged, (Finding("changed", (Score(1.0),)),))
         assert verification.share(verification.findings[0]) is None
 
@@ -95,41 +95,34 @@ class TestJson:
         )
 
     @pytest.mark.parametrize(
-        ("damage", "message"),
+        ("damage", "key", "data"),
         [
-            (lambda d: [d], "this JSON is no verification of evoframe"),
-            (lambda d: {"format": 1}, "this JSON is no verification of evoframe"),
-            (lambda d: {**d, "format": 2}, "format 2, but this evoframe reads format 1"),
-            (lambda d: {**d, "format": True}, "format True, but"),
-            (lambda d: {**d, "variants": []}, "not as evoframe writes it: expected one score"),
-            (lambda d: {**d, "variants": 7}, "not as evoframe writes it: its rows are damaged"),
-            (lambda d: {**d, "variants": [None]}, "not as evoframe writes it: its rows are damaged"),
-            (
-                lambda d: {key: d[key] for key in d if key != "unit"},
-                "not as evoframe writes it: its rows are damaged",
-            ),
-            (
-                lambda d: with_draw(d, score="high"),
-                "expected a score or the step of a divergence, found 'high'",
-            ),
-            (
-                lambda d: with_draw(d, score=math.nan),
-                "expected a score or the step of a divergence, found nan",
-            ),
-            (lambda d: with_draw(d, diverged_at=4), "found -6.0 and 4"),
-            (lambda d: with_draw(d, score=None), "found None and None"),
-            (lambda d: with_draw(d, score=-7.0), "its figures do not follow from its scores"),
-            (lambda d: {**d, "more": 1}, "its figures do not follow from its scores"),
+            (lambda d: [d], "", ""),
+            (lambda d: {"format": 1}, "", ""),
+            (lambda d: {**d, "format": 2}, "format", "2"),
+            (lambda d: {**d, "format": True}, "format", "True"),
+            (lambda d: {**d, "variants": []}, "variants", "one score"),
+            (lambda d: {**d, "variants": 7}, "variants", "rows"),
+            (lambda d: {**d, "variants": [None]}, "variants", "rows"),
+            (lambda d: {key: d[key] for key in d if key != "unit"}, "variants", "rows"),
+            (lambda d: with_draw(d, score="high"), "variants", "'high'"),
+            (lambda d: with_draw(d, score=math.nan), "variants", "nan"),
+            (lambda d: with_draw(d, diverged_at=4), "variants", "-6.0 and 4"),
+            (lambda d: with_draw(d, score=None), "variants", "None and None"),
+            (lambda d: with_draw(d, score=-7.0), "", "figures"),
+            (lambda d: {**d, "more": 1}, "", "figures"),
         ],
     )
-    def test_that_was_changed_is_refused(self, damage: Callable[[Any], Any], message: str) -> None:
+    def test_that_was_changed_is_refused(self, damage: Callable[[Any], Any], key: str, data: str) -> None:
         document = verify_design(toys.Varied(), toys.Value(), PAIR, toys.Here()).to_json()
-        with pytest.raises(ValueError, match=message):
+        with pytest.raises(InputError) as caught:
             verification_from_json(damage(document))
+        assert caught.value.key == key
+        assert data in caught.value.problem
 
 
 def with_draw(document: Any, **changed: Any) -> Any:
-    """Return a document whose unchanged draw says something else."""
+    """Return a document with a changed draw of the unchanged design."""
     first, *others = document["variants"]
     [draw] = first["draws"]
     return {**document, "variants": [{**first, "draws": [{**draw, **changed}]}, *others]}

@@ -1,4 +1,4 @@
-"""A run is opened once and handed on: nothing is parsed, opened or checked again."""
+"""A run is opened once and passed on: nothing is parsed, opened or checked twice."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Start = Callable[[Path], Any]
 
 @pytest.fixture(scope="module")
 def plugins() -> Plugins:
-    """Those that the program has with ``-p``: another source of the toys would be another version."""
+    """The plugins as loaded by ``-p``; toys from another source would count as another version."""
     return discover([toys.__file__])
 
 
@@ -35,9 +35,9 @@ def config(toy_file: Path, plugins: Plugins) -> RunConfig:
 
 @pytest.fixture
 def left(config: RunConfig, tmp_path: Path) -> Path:
-    """A run that was interrupted after some turns."""
-    asked = iter([False, False, False, True])
-    prepare(config, Plugins(), tmp_path / "run").play(lambda: next(asked))
+    """The directory of a run that was interrupted after some turns."""
+    stops = iter([False, False, False, True])
+    prepare(config, Plugins(), tmp_path / "run").play(lambda: next(stops))
     return tmp_path / "run"
 
 
@@ -47,7 +47,7 @@ def finished(config: RunConfig, tmp_path: Path) -> Path:
 
 
 def command(*arguments: str | Path) -> None:
-    """Run the program in this process."""
+    """Run the command in this process."""
     result = click.testing.CliRunner().invoke(cli, [*map(str, arguments)], catch_exceptions=False)
     assert result.exit_code == 0, result.output
 
@@ -76,63 +76,63 @@ def verify_from_python(directory: Path, plugins: Plugins) -> None:
     verify(directory, plugins=plugins)
 
 
-@pytest.mark.parametrize("go_on", [resume_from_python, resume_by_command])
-def test_a_run_that_goes_on_is_read_once_and_opened_once_more_to_write(
-    left: Path, plugins: Plugins, monkeypatch: pytest.MonkeyPatch, go_on: Callable[[Path, Plugins], None]
+@pytest.mark.parametrize("resumed", [resume_from_python, resume_by_command])
+def test_a_resumed_run_is_read_once_and_opened_once_more_to_write(
+    left: Path, plugins: Plugins, monkeypatch: pytest.MonkeyPatch, resumed: Callable[[Path, Plugins], None]
 ) -> None:
     reads = counted(left, monkeypatch)
-    go_on(left, plugins)
+    resumed(left, plugins)
     monkeypatch.undo()
     assert load_run(left).finished()
     assert (reads.parsed, reads.opened) == (1, 2)
     assert_every_table_was_checked_once(reads, TABLES - {"resumes"})  # which was empty
 
 
-@pytest.mark.parametrize("go_on", [resume_from_python, resume_by_command])
+@pytest.mark.parametrize("resumed", [resume_from_python, resume_by_command])
 @pytest.mark.parametrize("verified", [True, False])
-def test_a_finished_run_that_shall_go_on_is_read_once(
+def test_a_finished_run_that_is_resumed_is_read_once(
     finished: Path,
     plugins: Plugins,
     monkeypatch: pytest.MonkeyPatch,
-    go_on: Callable[[Path, Plugins], None],
+    resumed: Callable[[Path, Plugins], None],
     verified: bool,
 ) -> None:
     if not verified:
         (finished / "verification.json").unlink()
     reads = counted(finished, monkeypatch)
-    go_on(finished, plugins)
+    resumed(finished, plugins)
     assert (finished / "verification.json").exists()
     assert (reads.parsed, reads.opened) == (1, 1)
     assert set(reads.checked.values()) == {1}
 
 
-@pytest.mark.parametrize("look", [doctor_from_python, doctor_by_command])
+@pytest.mark.parametrize("check", [doctor_from_python, doctor_by_command])
 @pytest.mark.parametrize("which", ["left", "finished"])
-def test_a_run_that_is_looked_at_is_read_once(
+def test_a_checked_run_is_read_once(
     request: pytest.FixtureRequest,
     plugins: Plugins,
     monkeypatch: pytest.MonkeyPatch,
-    look: Callable[[Path, Plugins], None],
+    check: Callable[[Path, Plugins], None],
     which: str,
 ) -> None:
     directory: Path = request.getfixturevalue(which)
     reads = counted(directory, monkeypatch)
-    look(directory, plugins)
+    check(directory, plugins)
     assert (reads.parsed, reads.opened) == (1, 1)
     assert_every_table_was_checked_once(reads, TABLES - {"resumes"})
 
 
 @pytest.mark.parametrize("again", [verify_from_python, verify_by_command])
-def test_a_run_that_is_verified_is_read_once(
+def test_a_verified_run_is_read_once(
     finished: Path, plugins: Plugins, monkeypatch: pytest.MonkeyPatch, again: Callable[[Path, Plugins], None]
 ) -> None:
     reads = counted(finished, monkeypatch)
     again(finished, plugins)
     assert (reads.parsed, reads.opened) == (1, 1)
-    assert_every_table_was_checked_once(reads, {"best_pairs"})  # nothing else is asked for
+    assert_every_table_was_checked_once(reads, {"best_pairs"})  # nothing else is needed
 
 
-def test_a_run_that_is_loaded_is_read_once(finished: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_loaded_run_is_read_once(finished: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     reads = counted(finished, monkeypatch)
     loaded = load_run(finished)
     for ask in (loaded.pairs, loaded.pairs, loaded.champion, loaded.summary, loaded.state, loaded.turns):
@@ -141,7 +141,7 @@ def test_a_run_that_is_loaded_is_read_once(finished: Path, monkeypatch: pytest.M
     assert_every_table_was_checked_once(reads, TABLES - {"resumes"})
 
 
-def test_a_run_that_was_just_played_is_not_read_at_all(
+def test_a_run_just_played_is_not_read_at_all(
     config: RunConfig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     execution = prepare(config, Plugins(), tmp_path / "run")
@@ -153,7 +153,7 @@ def test_a_run_that_was_just_played_is_not_read_at_all(
 
 
 @pytest.mark.parametrize("with_row", [False, True])
-def test_a_run_of_a_study_is_read_once_for_how_far_it_is_and_for_its_row(
+def test_a_run_of_a_study_is_read_once_for_its_status_and_its_row(
     made: tuple[Study, Path, list[Planned]], monkeypatch: pytest.MonkeyPatch, with_row: bool
 ) -> None:
     planned = made[2][1]
@@ -161,7 +161,7 @@ def test_a_run_of_a_study_is_read_once_for_how_far_it_is_and_for_its_row(
     status = status_of(planned, with_row=with_row)
     assert (status.state, status.row is not None) == ("finished", with_row)
     assert gather({planned: status}, {})[planned].run == planned.index
-    reads_of_row = 1 if with_row else 2  # one that was not asked for is read by whoever gathers
+    reads_of_row = 1 if with_row else 2  # gather reads a row that is missing
     assert (reads.parsed, reads.opened) == (reads_of_row, reads_of_row)
     assert max(reads.checked.values()) <= reads_of_row
 

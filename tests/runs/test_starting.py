@@ -1,4 +1,4 @@
-"""How a run starts: its configuration, and a directory of its own."""
+"""Start of a run: its configuration, and a directory of its own."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from evoframe import (
     RunConfig,
     run,
 )
+from evoframe.errors import LockedError, NotEmptyError, OccupiedError
 from evoframe.files.locks import acquire_lock
 from evoframe.registry.registry import Plugins
 from evoframe.runs.starting import prepare
@@ -25,18 +26,21 @@ Load = Callable[..., RunConfig]
 
 
 class TestDirectory:
-    def test_one_that_is_not_empty_is_refused_and_left_alone(self, toy_config: Load, tmp_path: Path) -> None:
+    def test_one_that_is_not_empty_is_refused_and_not_changed(self, toy_config: Load, tmp_path: Path) -> None:
         (tmp_path / "mine.txt").write_text("precious")
-        with pytest.raises(InputError, match="is not empty; choose another directory with --out"):
+        with pytest.raises(NotEmptyError, match="--out") as caught:
             run(toy_config(), out=tmp_path)
+        assert not isinstance(caught.value, OccupiedError)
+        assert caught.value.source == str(tmp_path)
         assert (tmp_path / "mine.txt").read_text() == "precious"
         assert not (tmp_path / "run.db").exists()
 
     def test_one_that_is_a_file_is_refused(self, toy_config: Load, toy_file: Path) -> None:
-        with pytest.raises(InputError, match="cannot be used for a run"):
+        with pytest.raises(InputError, match="File exists") as caught:
             run(toy_config(), out=toy_file)
+        assert caught.value.source == str(toy_file)
 
-    def test_the_default_one_counts_and_runs_that_start_together_have_each_their_own(
+    def test_runs_that_start_together_get_numbered_default_directories(
         self, toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         monkeypatch.chdir(tmp_path)
@@ -49,14 +53,14 @@ class TestDirectory:
 
     def test_belongs_to_one_run(self, toy_config: Load, tmp_path: Path) -> None:
         first = prepare(toy_config(), Plugins(), tmp_path / "run")
-        with pytest.raises(InputError, match="is not empty"):
+        with pytest.raises(OccupiedError, match=f"evoframe resume {tmp_path / 'run'}$"):
             prepare(toy_config(), Plugins(), tmp_path / "run")
-        with pytest.raises(InputError, match="is being written by another process"):
+        with pytest.raises(LockedError):
             acquire_lock(tmp_path / "run")
         assert first.play().finished()
 
 
-def test_a_directory_is_made_only_when_all_components_have_started(
+def test_a_directory_is_created_only_after_all_components_have_started(
     toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuses(*_: Any) -> Any:
@@ -83,10 +87,10 @@ class TestPython:
         assert finished.config["run"] == {"seed": 5, "generations": 1}
         assert finished.config["collaboration"] == {"name": "toy-first", "n": 3}
 
-    def test_numbers_of_numpy_are_numbers(self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path) -> None:
+    def test_numpy_numbers_are_accepted(self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path) -> None:
         finished = run(
             toy_file,
-            seed=np.int64(5),  # type: ignore[arg-type]  # as a script may well do
+            seed=np.int64(5),  # type: ignore[arg-type]  # a common case in scripts
             out=tmp_path / "run",
             plugins=toy_plugins,
             simulator={"limit": np.float64(2.5)},
@@ -94,6 +98,6 @@ class TestPython:
         assert finished.config["run"]["seed"] == 5
         assert finished.config["simulator"]["limit"] == 2.5
 
-    def test_a_complete_configuration_takes_no_settings(self, toy_config: Load) -> None:
-        with pytest.raises(TypeError, match="give settings to load_config"):
+    def test_a_complete_configuration_accepts_no_settings(self, toy_config: Load) -> None:
+        with pytest.raises(TypeError, match="load_config"):
             run(toy_config(), seed=4)

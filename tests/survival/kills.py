@@ -1,10 +1,10 @@
-"""Kills runs at random moments, resumes them, and compares what comes of it with undisturbed runs.
+"""Kill runs at random moments, resume them, and compare the results with uninterrupted runs.
 
 ``python tests/survival/kills.py --kills 500`` is the long form; the suite kills 50 times. A kill counts only
-if a turn was saved since the run was last started. Half of them come from outside at any moment, the others
-from within: between two statements of a transaction, or around the writing of a champion's file.
+if a turn was saved since the last start of the run. Half of the kills come from outside at any moment, the
+others from inside: between two statements of a transaction, or before or after writing a champion's file.
 
-Every attempt is a fork of this process, so that no time is lost with starting Python.
+Every attempt is a fork of this process, which avoids starting Python again.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from opening import has_begun, is_finished, reopened
 from recorded import assert_same_result, rows
 
 GENERATIONS = 40
-_PAUSE = 0.02  # s, at most, between a saved turn and a kill from outside: a turn takes less
+_PAUSE = 0.02  # s; longest time between a saved turn and a kill from outside, longer than a turn
 
 
 class Reporter:
-    """Tells the parent of every saved turn."""
+    """Reports every saved turn to the parent process."""
 
     def __init__(self, pipe: int) -> None:
         self.pipe = pipe
@@ -49,7 +49,7 @@ class Reporter:
 
 
 def play(directory: Path, seed: int, workers: int, pipe: int) -> None:
-    """Begin a run, or go on with it, to its end."""
+    """Start or resume a run, and play it to the end."""
     plugins = discover()
     plugins.manager.register(Reporter(pipe))
     overrides = [f"run.seed={seed}", f"run.generations={GENERATIONS}", f"executor.workers={workers}"]
@@ -61,7 +61,7 @@ def play(directory: Path, seed: int, workers: int, pipe: int) -> None:
 
 
 def dies_at(call: int) -> None:
-    """Let this process kill itself at some call of what writes to the disk."""
+    """Make this process kill itself at the *call*-th call of a function that writes to the disk."""
     left = [call]
 
     def dying(function: Callable[..., Any], *, after: bool) -> Callable[..., Any]:
@@ -76,7 +76,7 @@ def dies_at(call: int) -> None:
 
         return wrapper
 
-    evoframe.record.store._SYNC_INTERVAL = 0.0  # a champion's file and the synchronisation follow every turn
+    evoframe.record.store._SYNC_INTERVAL = 0.0  # synchronize and write the champion's file after every turn
     store: Any = evoframe.record.store.Store
     store._write = dying(store._write, after=True)
     replace: Any = dying(Path.replace, after=call % 2 == 0)
@@ -85,7 +85,7 @@ def dies_at(call: int) -> None:
 
 @contextlib.contextmanager
 def forked(action: Callable[[int], None]) -> Iterator[tuple[int, int]]:
-    """Yield the number of a process that runs *action*, and the end of a pipe to read from."""
+    """Yield the process id of a fork that runs *action*, and the reading end of its pipe."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
@@ -104,7 +104,7 @@ def forked(action: Callable[[int], None]) -> Iterator[tuple[int, int]]:
 
 
 def attempt(directory: Path, seed: int, chance: random.Random) -> str:
-    """Let a run go on, and kill it. Was it ``finished``, killed ``outside`` or ``inside``, or ``early``?"""
+    """Start or resume a run, kill it, and return ``finished``, ``outside``, ``inside`` or ``early``."""
     workers, inside, turns = chance.choice([1, 2]), chance.random() < 0.5, chance.randint(1, 3)
     call = chance.randint(6, 24)  # a turn writes about eight times
 
@@ -122,7 +122,7 @@ def attempt(directory: Path, seed: int, chance: random.Random) -> str:
             os.kill(child, signal.SIGKILL)
         _, status = os.waitpid(child, 0)
     if (directory / "run.db-journal").exists():
-        raise SystemExit(f"seed {seed}: a kill left a journal that only a writer can undo")
+        raise SystemExit(f"seed {seed}: a kill left a journal that only a writer can roll back")
     if os.WIFEXITED(status):
         if os.WEXITSTATUS(status) != 0:
             raise SystemExit(f"seed {seed}: a run failed instead of being killed")
@@ -132,23 +132,23 @@ def attempt(directory: Path, seed: int, chance: random.Random) -> str:
     return "inside" if inside else "outside"
 
 
-def compare(directory: Path, undisturbed: Path, seed: int) -> None:
-    """Compare a run that was killed again and again with one that was not."""
-    with forked(lambda pipe: play(undisturbed, seed, 2, pipe)) as (child, pipe):
+def compare(directory: Path, uninterrupted: Path, seed: int) -> None:
+    """Compare a run that was killed several times with an uninterrupted run."""
+    with forked(lambda pipe: play(uninterrupted, seed, 2, pipe)) as (child, pipe):
         while os.read(pipe, 1024):
             pass
         _, status = os.waitpid(child, 0)
     if status != 0:
-        raise SystemExit(f"seed {seed}: the undisturbed run failed")
-    assert_same_result(undisturbed, directory)
-    pairs = [[row[:2] for row in rows(each, "workload")] for each in (undisturbed, directory)]
+        raise SystemExit(f"seed {seed}: the uninterrupted run failed")
+    assert_same_result(uninterrupted, directory)
+    pairs = [[row[:2] for row in rows(each, "workload")] for each in (uninterrupted, directory)]
     assert pairs[0] == pairs[1]
     with contextlib.closing(sqlite3.connect(directory / "run.db")) as database:
         assert database.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
 
 
 def main() -> None:
-    """Kill until it was often enough; the run that is then going on is finished and compared too."""
+    """Kill runs until ``--kills`` is reached; the last run is finished and compared too."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--kills", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
@@ -163,14 +163,14 @@ def main() -> None:
                 how = attempt(directory, seed, chance)
                 counts[how] += 1
                 kills += how in ("inside", "outside")
-            compare(directory, Path(base) / f"undisturbed-{seed}", seed)
+            compare(directory, Path(base) / f"uninterrupted-{seed}", seed)
             turns += load_run(directory).summary()["turns"]
             most, seed = max(most, kills), seed + 1
     kills = counts["inside"] + counts["outside"]
     print(  # noqa: T201
-        f"{kills} kills after a saved turn ({counts['inside']} of them while something was being written), "
-        f"{counts['early']} before any; {seed - given.seed} runs of {turns} turns in all, at most {most} "
-        "kills in one: all equal to undisturbed runs"
+        f"{kills} kills after a saved turn ({counts['inside']} during a write) and {counts['early']} before; "
+        f"{seed - given.seed} runs with {turns} turns in total and at most {most} kills in one run: "
+        "all results equal those of uninterrupted runs"
     )
 
 

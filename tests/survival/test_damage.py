@@ -1,4 +1,4 @@
-"""A damaged database is detected, or the damage changes nothing that is read."""
+"""Damage of a database is detected, or does not change any value that is read."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PAGE = 4096
 
 
 def everything(directory: Path) -> list[Any]:
-    """Return all that can be read of a run."""
+    """Return all that can be read from a run."""
     loaded = load_run(directory)
     tables = [loaded.table(name) for name in (*CHAINED, *SINGLE)]
     champion = loaded.champion()
@@ -114,24 +114,26 @@ def test_a_change_by_hand_is_named(intact: Run, tmp_path: Path, statement: str, 
     with sqlite3.connect(tmp_path / "run" / "run.db") as database:
         database.execute(statement)
     database.close()
-    with pytest.raises(InputError, match=f"run.db: is damaged: {names} is not what was saved"):
+    with pytest.raises(InputError, match="checksum") as caught:
         everything(tmp_path / "run")
+    assert (caught.value.source, caught.value.key) == (str(tmp_path / "run" / "run.db"), names)
 
 
 def reopen(directory: Path) -> None:
     reopened(directory, discover())
 
 
-def test_what_is_damaged_is_not_resumed(intact: Run, tmp_path: Path) -> None:
+def test_a_damaged_run_is_not_resumed(intact: Run, tmp_path: Path) -> None:
     shutil.copytree(intact.directory, tmp_path / "run")
     with sqlite3.connect(tmp_path / "run" / "run.db") as database:
         database.execute("UPDATE pairs SET score = 1.0 WHERE turn = 3 AND pair = 1")
     database.close()
-    with pytest.raises(InputError, match="is damaged: pairs"):
+    with pytest.raises(InputError, match="checksum") as caught:
         reopen(tmp_path / "run")
+    assert caught.value.key == "pairs"
 
 
-def test_a_table_without_an_end_is_not_read(intact: Run, tmp_path: Path) -> None:
+def test_an_endless_table_is_not_read(intact: Run, tmp_path: Path) -> None:
     shutil.copytree(intact.directory, tmp_path / "run")
     endless = (
         "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT 'format' AS key, i AS value"
@@ -141,23 +143,26 @@ def test_a_table_without_an_end_is_not_read(intact: Run, tmp_path: Path) -> None
         database.execute(f"CREATE VIEW meta AS {endless} FROM n WHERE i < 0")
     database.close()
     for read in (everything, reopen):
-        with pytest.raises(InputError, match="has no format, but this evoframe reads format 2"):
+        with pytest.raises(InputError, match="2, found none;") as caught:
             read(tmp_path / "run")
+        assert caught.value.key == "meta.format"
 
 
-def test_names_of_populations_are_no_sql(intact: Run, tmp_path: Path) -> None:
+def test_names_of_populations_are_not_executed_as_sql(intact: Run, tmp_path: Path) -> None:
     shutil.copytree(intact.directory, tmp_path / "run")
     path = tmp_path / "run" / "config.toml"
     path.write_text(path.read_text().replace("[populations.morphology", "[populations.'m\" INTEGER, \"x'"))
-    with pytest.raises(InputError, match="its tables are not those of a run"):
+    with pytest.raises(InputError, match=r"config\.toml") as caught:
         everything(tmp_path / "run")
+    assert (caught.value.source, caught.value.key) == (str(tmp_path / "run" / "run.db"), "")
 
 
-def test_values_of_other_types_are_refused(intact: Run, tmp_path: Path) -> None:
+def test_values_of_wrong_types_are_refused(intact: Run, tmp_path: Path) -> None:
     shutil.copytree(intact.directory, tmp_path / "run")
     rewritten(tmp_path / "run", "UPDATE pairs SET score = 'high' WHERE turn = 1")
-    with pytest.raises(InputError, match="is damaged: pairs has a row with values of other types"):
+    with pytest.raises(InputError, match=r"types: .*'high'") as caught:
         everything(tmp_path / "run")
+    assert caught.value.key == "pairs"
 
 
 @pytest.mark.parametrize("schema", ["VIEW", "TRIGGER"])
@@ -171,14 +176,15 @@ def test_nothing_in_a_database_is_executed(intact: Run, tmp_path: Path, schema: 
             database.execute("CREATE TRIGGER t AFTER INSERT ON resumes BEGIN DELETE FROM pairs; END")
     database.close()
     for read in (everything, reopen):
-        with pytest.raises(InputError, match="its tables are not those of a run"):
+        with pytest.raises(InputError, match=r"config\.toml") as caught:
             read(tmp_path / "run")
+        assert (caught.value.source, caught.value.key) == (str(tmp_path / "run" / "run.db"), "")
 
 
-def test_a_text_beyond_all_sense_is_not_read(intact: Run, tmp_path: Path) -> None:
+def test_a_text_of_excessive_length_is_not_read(intact: Run, tmp_path: Path) -> None:
     shutil.copytree(intact.directory, tmp_path / "run")
     with sqlite3.connect(tmp_path / "run" / "run.db") as database:
         database.execute("UPDATE state SET state = zeroblob(100000000) WHERE part = 'loop'")
     database.close()
-    with pytest.raises(InputError, match=r"run\.db: cannot be read: string or blob too big"):
+    with pytest.raises(InputError, match=r"run\.db: .*too big"):
         everything(tmp_path / "run")

@@ -1,4 +1,4 @@
-"""Run directories from anyone: nothing outside them is read or written, and no state is believed unseen."""
+"""Run directories from strangers: no file outside is read or written, and every state is checked."""
 
 from __future__ import annotations
 
@@ -47,29 +47,30 @@ def test_links_are_not_followed(
     outside.write_text("precious")
     (directory / name).unlink(missing_ok=True)
     (directory / name).symlink_to(outside)
-    with pytest.raises(InputError, match=f"{name}: is a link; a run's directory has nothing but files"):
+    with pytest.raises(InputError, match=f"{name}: .* link"):
         use(directory)
     assert outside.read_text() == "precious"
 
 
-def test_what_has_no_end_is_not_waited_for(directory: Path) -> None:
+def test_a_pipe_is_not_read(directory: Path) -> None:
     (directory / "verification.json").unlink()
     os.mkfifo(directory / "verification.json")
-    with pytest.raises(InputError, match=r"verification\.json: is no file"):
+    with pytest.raises(InputError, match=r"verification\.json: "):
         load_run(directory)
 
 
-def test_a_journal_is_not_undone(directory: Path) -> None:
+def test_a_journal_is_not_rolled_back(directory: Path) -> None:
     (directory / "run.db-journal").write_bytes(b"x" * 5000)
     before = (directory / "run.db").read_bytes()
     for use in (load_run, is_finished, reopen):
-        with pytest.raises(InputError, match=r"run\.db-journal: is of another program"):
+        with pytest.raises(InputError) as caught:
             use(directory)
+        assert caught.value.source == str(directory / "run.db-journal")
     assert (directory / "run.db").read_bytes() == before
 
 
-def test_a_champion_without_an_end_is_not_read() -> None:
-    with pytest.raises(InputError, match="/dev/zero: is larger than 64 MiB"):
+def test_an_endless_champion_is_not_read() -> None:
+    with pytest.raises(InputError, match=r"/dev/zero: .*64 MiB"):
         read_champion(Path("/dev/zero"))
 
 
@@ -82,9 +83,8 @@ def test_the_configuration_of_a_run_reads_no_other_file(
     path.write_text(path.read_text().replace("extends = false", "extends = '../secret.toml'"))
     refused = CliRunner().invoke(cli, [*command, str(directory)])
     assert refused.exit_code == 2
-    assert (
-        "extends: a run's configuration is complete; expected false, found '../secret.toml'" in refused.output
-    )
+    assert f"{path}: extends: " in refused.output
+    assert "'../secret.toml'" in refused.output
     assert "precious" not in refused.output
 
 
@@ -129,7 +129,7 @@ def test_a_state_that_was_tampered_with_is_refused_or_harmless(evolver: str) -> 
         next(turns)
         next(turns)
         state = json.loads(json.dumps(coevolution.state()))
-    # The 624 words of each random stream are alike.
+    # The 624 words of each random stream are equivalent; skip them.
     everywhere = [path for path in places(state) if len(path) < 6 or path[3] != "random"]
 
     @given(st.sampled_from(everywhere), st.sampled_from(STRANGE))

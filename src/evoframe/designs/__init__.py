@@ -1,4 +1,4 @@
-"""Designs that a person names: reading, verifying and exporting them."""
+"""Designs given by the user: reading, simulating, verifying and exporting."""
 
 from evoframe.designs.exporting import export_all, export_job
 from evoframe.designs.simulating import simulate_job, trace_of

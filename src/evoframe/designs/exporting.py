@@ -1,4 +1,4 @@
-"""Designs as files of other programs, in the formats of their simulator."""
+"""Export of designs to files of other programs, in the formats of their simulator."""
 
 from __future__ import annotations
 
@@ -15,41 +15,43 @@ _log = logging.getLogger(__name__)
 
 
 def export_job(job: Job, format_: str) -> Export:
-    """Return the only design of a job with its settings, in one of the formats of its simulator.
+    """Export the single design of a job with its settings, in one of the formats of its simulator.
 
     Raises:
-        ConfigurationError: The simulator writes no such files, or the format cannot express the settings.
-        InputError: The job has several designs, or the format cannot express the design.
+        ConfigurationError: The simulator lacks this format, or the format cannot represent the settings.
+        InputError: The job has several designs, or the format cannot represent the design.
     """
     if len(job.designs) != 1:
-        raise InputError(f"{job.path}: holds {len(job.designs)} designs, but a file is written of one")
+        raise InputError(f"expected one design to export, found {len(job.designs)}", source=job.path)
     name, simulator = job.config.simulator.name, job.config.simulator.component
     if not isinstance(simulator, SupportsExport):
-        raise ConfigurationError(f"the simulator '{name}' writes no files of other programs")
+        raise ConfigurationError(f"'{name}' cannot export designs", source=job.path, key="simulator")
     if format_ not in simulator.formats:
         hint = suggestion(format_, simulator.formats, "formats")
-        raise ConfigurationError(f"the simulator '{name}' has no format '{format_}'{hint}")
+        raise ConfigurationError(
+            f"'{name}' has no format '{format_}'{hint}", source=job.path, key="simulator"
+        )
     with naming(job.path):
         return simulator.export(job.designs[0], format_)
 
 
 def export_all(simulator: Simulator, design: Design) -> dict[str, bytes | None]:
-    """Return *design* in every format of *simulator*, if it has any.
+    """Export *design* in every format of *simulator*.
 
     Returns:
-        Ending -> bytes of the file. ``None`` where a format cannot say the design; the log says why.
+        Suffix -> bytes of the file; ``None`` if a format cannot represent the design (the log has the cause).
     """
     if not isinstance(simulator, SupportsExport):
         return {}
-    return {format_: _exported(simulator, design, format_) for format_ in simulator.formats}
+    return {format_: _export(simulator, design, format_) for format_ in simulator.formats}
 
 
-def _exported(simulator: SupportsExport, design: Design, format_: str) -> bytes | None:
+def _export(simulator: SupportsExport, design: Design, format_: str) -> bytes | None:
     try:
         export = simulator.export(design, format_)
     except Exception as error:  # noqa: BLE001 - the run does not depend on it
-        _log.warning("there is no %s file of the champion: %s", format_, cause_of(error))
+        _log.warning("the champion cannot be exported as %s: %s", format_, cause_of(error))
         return None
     for entry in export.left_out:
-        _log.info("the %s file of the champion leaves out: %s", format_, entry)
+        _log.info("the %s file of the champion omits: %s", format_, entry)
     return export.data

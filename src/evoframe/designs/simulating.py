@@ -1,4 +1,4 @@
-"""Simulation of what a person names: scores of designs, and where their points are after every step."""
+"""Simulation of designs given by the user: their scores, and positions of points after every step."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def simulate_job(job: Job) -> list[Score]:
 
 
 def trace_of(simulator: Simulator, design: Design) -> Iterator[list[str]]:
-    """Yield a table of the points of a design: a header, the state at the start, a row for each step.
+    """Yield the positions of a design's points: a header, a row for the initial state, a row per step.
 
     Columns are ``step``, ``time`` (s) and ``NAME_x``, ``NAME_y``, ``NAME_z`` (m) for each point that the
-    simulator follows; numbers are exact to the last bit.
+    simulator tracks; numbers are exact to the last bit.
     """
     record = Record(tracks=simulator.tracks, initial=True)
     [outcome] = simulator.simulate([design], record)

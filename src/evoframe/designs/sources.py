@@ -1,4 +1,4 @@
-"""What a person names to have it simulated, verified or exported: files with designs, and runs."""
+"""Sources of designs to simulate, verify or export: files with designs, and runs."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from evoframe.config import (
 from evoframe.contract import Design, RunConfig, SupportsReading, SupportsSettings
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_directory
-from evoframe.record import CONFIG_FILE, Run, open_run, read_champion
+from evoframe.record import CHAMPION_FILE, CONFIG_FILE, Run, open_run, read_champion
 from evoframe.registry import Plugins
 
 __all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
 
 DEFAULT_PRESET = "paper"
-"""With which designs are simulated that do not say how."""
+"""The preset that provides the settings that a file lacks."""
 
 
 @attrs.frozen
 class Job:
-    """The designs of one file or run, and the configuration that they are simulated with.
+    """The designs of one file or run, and the configuration with which they are simulated.
 
     Attributes:
         path: The file, or the run's directory.
-        config: What simulates and scores them.
-        labels: What a person calls each design.
-        designs: One for each label.
-        run: The run, if its directory was named.
-        score: What the design scored in its run, if it is a champion that is simulated as it was there.
+        config: The configuration that simulates and scores them.
+        labels: A label for each design, shown to the user.
+        designs: The designs, in the order of the labels.
+        run: The run, if the source is a run.
+        score: Its score in the run, if the design is a champion simulated as in its run.
     """
 
     path: Path
@@ -58,29 +58,29 @@ def read_job(
     *,
     runs: bool = False,
 ) -> Job:
-    """Read the designs of a source, and decide how they are simulated.
+    """Read the designs of a source, and determine the configuration with which they are simulated.
 
-    A run and its ``champion.json`` are simulated as in the run, unless a *preset* is named. Of all other
-    files the simulator says what they hold, and which settings they bring with them; these override the
-    preset's, which is ``paper`` if none is named. *overrides* come last.
+    A run or its ``champion.json`` is simulated as in the run, unless *preset* is given. All other files are
+    read by the simulator, which returns their designs and settings; these settings override the preset
+    (default: ``paper``). *overrides* have the highest precedence.
 
     Args:
-        source: A run, which stands for its champion, or its directory; a ``champion.json``, or a file that
+        source: A run or its directory, for its champion; a ``champion.json``; or a file in a format that
             the simulator reads.
         preset: Name of a preset, or path of a TOML file.
         overrides: ``key=value``, or layers, as for :func:`~evoframe.load_config`.
-        plugins: The plugins to choose from.
-        runs: Whether the directory of a run is accepted.
+        plugins: The available plugins.
+        runs: Accept the directory of a run.
 
     Raises:
-        InputError: The file cannot be read, or is something else.
-        ConfigurationError: It cannot be simulated like this.
+        InputError: The file cannot be read, or has an unexpected content.
+        ConfigurationError: The configuration is invalid, or does not fit the designs.
     """
     if isinstance(source, Run):
         return _of_run(source, preset, overrides, plugins)
     if is_directory(source):
         if not runs:
-            raise InputError(f"{source}: cannot be read: Is a directory; that of a run has a champion.json")
+            raise InputError(f"is a directory; for a run, name {source / CHAMPION_FILE}", source=source)
         with open_run(source) as run:
             return _of_run(run, preset, overrides, plugins)
     read = _of_champion if source.suffix == ".json" else _of_file
@@ -89,11 +89,12 @@ def read_job(
 
 @contextlib.contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Put the file in front of what a component says that knows only its content."""
+    """Make *path* the source of errors of a component, which knows only the content of the file."""
     try:
         yield
     except (ConfigurationError, InputError) as error:
-        raise type(error)(f"{path}: {error}") from error
+        error.source = error.source or str(path)
+        raise
 
 
 def _of_run(run: Run, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
@@ -124,13 +125,14 @@ def _of_file(path: Path, preset: str | None, overrides: Sequence[str | Layer], p
     config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
     simulator = config.simulator.component
     if not isinstance(simulator, SupportsReading):
-        raise ConfigurationError(f"the simulator '{config.simulator.name}' reads no files")
+        problem = f"'{config.simulator.name}' cannot read files with designs"
+        raise ConfigurationError(problem, source=path, key="simulator")
     labels, designs = zip(*simulator.read(path), strict=True)
     return Job(path, config, labels, designs)
 
 
 def _settings_of(path: Path, source: str, overrides: Sequence[str | Layer], plugins: Plugins) -> list[Layer]:
-    """Return the layer of settings that a file brings with it, if it brings any."""
+    """Return the settings in a file as a layer, if it has any."""
     simulator = named_simulator(source, overrides, plugins)
     if simulator is None or not isinstance(simulator.component, SupportsSettings):
         return []
@@ -141,10 +143,10 @@ def _settings_of(path: Path, source: str, overrides: Sequence[str | Layer], plug
 def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
     missing = [role for role in config.simulator.component.requires if role not in design.roles]
     if missing:
-        raise InputError(f"{path}: design: has no {' and no '.join(missing)}")
+        raise InputError(f"missing {' and '.join(missing)}", source=path, key="design")
 
 
 def _changes_nothing(own: Layers, overrides: Sequence[str | Layer]) -> bool:
-    """Return whether *overrides* leave simulation and scoring as they are."""
+    """Return ``True`` if *overrides* change neither simulator nor objective."""
     alone, together = own.merged(), own.under(overrides).merged()
     return all(alone.get(key) == together.get(key) for key in ("simulator", "objective"))

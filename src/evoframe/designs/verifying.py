@@ -1,4 +1,4 @@
-"""Verification of what a person names: a run's champion, or the designs of a file."""
+"""Verification of designs given by the user: the champion of a run, or the designs of a file."""
 
 from __future__ import annotations
 
@@ -36,22 +36,22 @@ def verify(
     plugins: Plugins | None = None,
     **settings: Any,
 ) -> list[Verification]:
-    """Simulate designs again with one thing changed at a time, as the command ``evoframe verify`` does.
+    """Simulate designs again with one thing changed at a time, like the command ``evoframe verify``.
 
     Args:
-        source: A run or its directory, which stand for its champion; or a file with designs.
-        preset: What the file does not say is as in this preset; a champion is simulated as this preset does.
+        source: A run or its directory, for its champion; or a file with designs.
+        preset: The preset for settings that the file lacks; for a champion, it replaces those of the run.
         workers: Overrides ``executor.workers``.
-        plugins: The plugins to choose from; by default those that are installed.
+        plugins: The available plugins; by default all installed plugins.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
 
     Returns:
-        One verification for each design; that of a run, simulated as it was, is kept in its directory too.
+        One verification per design. That of a run with unchanged settings is also written to its directory.
 
     Raises:
-        ConfigurationError: The settings cannot be accepted, or the simulator offers no variants.
-        InputError: The file or directory cannot be read, or is something else.
-        RunError: The verification cannot be made or kept.
+        ConfigurationError: The settings are invalid, or the simulator offers no variants.
+        InputError: The file or directory cannot be read, or has an unexpected content.
+        RunError: The verification fails or cannot be written.
     """
     overrides = layers_of({**settings, "executor.workers": workers})
     named = source if isinstance(source, Run) else Path(source)
@@ -67,17 +67,17 @@ def verify_job(job: Job) -> list[Verification]:
     Raises:
         ConfigurationError: The simulator offers no variants.
         InputError: The simulator cannot simulate a design.
-        RunError: The verification cannot be made.
+        RunError: The verification fails.
     """
     with naming(job.path):
         return verify_designs(job.config, job.designs, job.score)
 
 
 def keep_of_job(job: Job, verifications: Sequence[Verification]) -> None:
-    """Keep the verification of a run, simulated as it was, in its directory; of other jobs nothing is kept.
+    """Write the verification of a run to its directory, unless its settings were changed.
 
     Raises:
-        RunError: It cannot be kept.
+        RunError: The file cannot be written.
     """
     if job.run is not None and job.score is not None:
         [verification] = verifications
@@ -87,22 +87,20 @@ def keep_of_job(job: Job, verifications: Sequence[Verification]) -> None:
 def verify_designs(
     config: RunConfig, designs: Sequence[Design], score: float | None = None
 ) -> list[Verification]:
-    """Return what becomes of designs in all variants of a configuration's simulator.
+    """Simulate designs in all variants of a configuration's simulator.
 
     Args:
-        config: How they are simulated and scored, and by how many workers.
-        designs: What is verified, each on its own.
-        score: What a champion scored in its run.
+        config: The configuration with simulator, objective and executor.
+        designs: The designs, verified independently.
+        score: The score of a champion in its run.
 
     Raises:
         ConfigurationError: The simulator offers no variants.
     """
     simulator = config.simulator.component
     if not isinstance(simulator, SupportsVariants):
-        raise ConfigurationError(
-            f"the simulator '{config.simulator.name}' offers no variants of a simulation, so there is "
-            "nothing that a score could be compared with"
-        )
+        problem = f"'{config.simulator.name}' offers no variants, so its scores cannot be verified"
+        raise ConfigurationError(problem, key="simulator")
     workers = config.executor.component.start()
     try:
         return [
@@ -119,17 +117,17 @@ def verify_design(
     workers: ExecutorRun,
     score: float | None = None,
 ) -> Verification:
-    """Simulate a design as it is, and in all variants of its simulator.
+    """Simulate a design unchanged and in all variants of its simulator.
 
     Args:
-        simulator: Simulates it, and offers the variants.
-        objective: Scores all of them.
-        design: What is verified.
-        workers: Simulate at the same time; the result does not depend on them.
-        score: What the design scored in its run, if it is a champion.
+        simulator: The simulator, which offers the variants.
+        objective: Scores all simulations.
+        design: The design to verify.
+        workers: Simulate in parallel; the result does not depend on their number.
+        score: Its score in the run, if the design is a champion.
 
     Raises:
-        RunError: The simulator or the objective did not keep its word.
+        RunError: The simulator or the objective failed, or returned an invalid result.
     """
     variants = list(simulator.variants(design, objective.record))
     unchanged = Variant(UNCHANGED, simulator, design, objective.record)

@@ -1,4 +1,4 @@
-"""A run's directory: what is written while a run goes on, and the run read back from it."""
+"""The record of a run: a directory that is written during the run, and read back from it."""
 
 from evoframe.record.champion import Champion, design_from_json, read_champion
 from evoframe.record.checksums import CHAINED, SINGLE

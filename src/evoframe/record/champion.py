@@ -1,4 +1,4 @@
-"""The champion: the best pair that was really simulated, as a document that simulates it again."""
+"""The champion of a run (its best pair), as a JSON document from which it can be simulated again."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ __all__ = [
     "champion_from_json",
     "design_from_json",
     "design_to_json",
+    "joined_key",
     "read_champion",
 ]
 
 FORMAT = 1
-"""Version of the champion's document; that of the run directory is another."""
+"""Version of champion.json; the run directory has its own."""
 
 _DTYPES = (
     *("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64"),
@@ -37,13 +38,13 @@ _CHAMPION_KEYS = {"format", "score", "simulation", "design"}
 
 @attrs.frozen(eq=False)
 class Champion:
-    """The best pair that was really simulated.
+    """The best simulated pair.
 
     Attributes:
-        score: What the objective gave; a displacement in metres with all built-in objectives.
-        design: Body and controller.
-        simulation: The tables ``simulator`` and ``objective`` that it was simulated with.
-        genomes: Population -> its genome, as its evolver dumps it.
+        score: Its score by the objective; a displacement in meters with all built-in objectives.
+        design: Its body and controller.
+        simulation: The tables ``simulator`` and ``objective`` with which it was simulated.
+        genomes: Population -> genome, as dumped by the evolver.
     """
 
     score: float
@@ -53,7 +54,7 @@ class Champion:
 
 
 def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str, Any]:
-    """Return all that is needed to simulate the champion again, and nothing of this machine, as JSON."""
+    """Return the champion as JSON values, complete enough to simulate it again on any machine."""
     return {
         "format": FORMAT,
         "score": pair.score,
@@ -69,11 +70,13 @@ def design_to_json(design: Design) -> dict[str, Any]:
     """Return a design as JSON values, exact to the last bit.
 
     Raises:
-        RunError: A role is no array of finite numbers.
+        RunError: A role is not an array of finite numbers.
     """
     for role, array in design.roles.items():
         if array.dtype.name not in _DTYPES or not np.isfinite(array).all():
-            raise RunError(f"the design's role '{role}' is no array of finite numbers, but {array.dtype}")
+            raise RunError(
+                f"expected an array of finite numbers, found {_nature(array)}", key=f"design.{role}"
+            )
     return {
         role: {"dtype": array.dtype.name, "shape": list(array.shape), "values": array.ravel().tolist()}
         for role, array in design.roles.items()
@@ -81,65 +84,86 @@ def design_to_json(design: Design) -> dict[str, Any]:
 
 
 def design_from_json(document: Any) -> Design:
-    """Return the design that :func:`design_to_json` described.
+    """Return the design that :func:`design_to_json` wrote.
 
     Raises:
-        ValueError: It is not such a document.
+        InputError: The document is not a design; the error's key is the role.
     """
     if not isinstance(document, dict):
-        raise ValueError("expected a table of roles")  # noqa: TRY004 - it is a bad document
+        raise InputError(f"expected a table of roles, found {document!r}")
     return Design({role: _array_from_json(role, given) for role, given in document.items()})
 
 
 def champion_from_json(text: str) -> Champion:
-    """Return the champion that :func:`champion_document` described.
+    """Return the champion that :func:`champion_document` wrote.
 
     Raises:
-        ValueError: The text is not JSON, or no champion; says why.
+        InputError: The text is not JSON, or not a champion.
     """
-    document = parsed_json(text)
+    try:
+        document = parsed_json(text)
+    except ValueError as error:
+        raise InputError(str(error)) from error
     if not isinstance(document, dict) or not document.keys() >= _CHAMPION_KEYS:
-        raise ValueError("this JSON is no champion of evoframe; expected a run's champion.json")
+        raise InputError("not a champion; expected the champion.json of a run")
     if document["format"] is True or document["format"] != FORMAT:
-        raise ValueError(f"format {document['format']!r}, but this evoframe reads format {FORMAT}")
+        hint = "read it with the version of evoframe that wrote it"
+        raise InputError(f"expected {FORMAT}, found {document['format']!r}; {hint}", key="format")
     if not isinstance(document["score"], float) or not math.isfinite(document["score"]):
-        raise ValueError(f"score: expected a number, found {document['score']!r}")
+        raise InputError(f"expected a number, found {document['score']!r}", key="score")
     genomes = document.get("genomes", {})
     for key, table in (("simulation", document["simulation"]), ("genomes", genomes)):
         if not isinstance(table, dict):
-            raise ValueError(f"{key}: expected a table, found {table!r}")  # noqa: TRY004 - it is a bad document
+            raise InputError(f"expected a table, found {table!r}", key=key)
     try:
         design = design_from_json(document["design"])
-    except (KeyError, OverflowError, TypeError, ValueError) as error:
-        raise ValueError(f"design: not as evoframe writes it: {error}") from error
+    except InputError as error:
+        raise InputError(error.problem, key=joined_key("design", error.key)) from error
     return Champion(document["score"], design, document["simulation"], genomes)
 
 
 def read_champion(path: Path) -> Champion:
-    """Return what :func:`champion_from_json` finds in a ``champion.json``.
+    """Read the champion in a ``champion.json``.
 
     Raises:
-        InputError: The file cannot be read, or is no champion.
+        InputError: The file cannot be read, or is not a champion.
     """
     text = read_text(path, LARGEST_DOCUMENT)
     try:
         return champion_from_json(text)
-    except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+    except InputError as error:
+        raise InputError(error.problem, source=path, key=error.key) from error
+
+
+def joined_key(outer: str, inner: str) -> str:
+    """Return the dotted key of *inner*, which may be empty, within *outer*."""
+    return f"{outer}.{inner}" if inner else outer
+
+
+def _nature(array: NDArray[Any]) -> str:
+    return f"{array.dtype} with NaN or infinity" if array.dtype.name in _DTYPES else str(array.dtype)
 
 
 def _array_from_json(role: str, given: Any) -> NDArray[Any]:
-    """Return an array, exactly as it is written: nothing is rounded, wrapped or guessed."""
-    name, shape, values = given["dtype"], given["shape"], given["values"]
+    """Return an array exactly as written; refuse values that would have to be rounded, wrapped or guessed."""
+    try:
+        return _exact_array(given["dtype"], given["shape"], given["values"])
+    except KeyError as error:
+        raise InputError(f"missing {error}", key=role) from error
+    except (OverflowError, TypeError, ValueError) as error:
+        raise InputError(f"not an array written by evoframe: {error}", key=role) from error
+
+
+def _exact_array(name: str, shape: Any, values: Any) -> NDArray[Any]:
     if name not in _DTYPES:
-        raise ValueError(f"{role}: unknown dtype {name!r}; known: {', '.join(_DTYPES)}")
+        raise ValueError(f"unknown dtype {name!r}; known: {', '.join(_DTYPES)}")
     dtype = np.dtype(name)
     kind = {"b": bool, "f": float}.get(dtype.kind, int)
     if not all(type(value) is kind for value in values):
-        raise ValueError(f"{role}: expected values of type {name}")
+        raise ValueError(f"expected values of type {name}")
     if not all(type(length) is int and length >= 0 for length in shape):
-        raise ValueError(f"{role}: expected the lengths of axes, found the shape {shape}")
+        raise ValueError(f"expected the lengths of the axes, found the shape {shape}")
     array = np.array(values, dtype=dtype)
     if array.tolist() != values:
-        raise ValueError(f"{role}: {name} cannot hold the values")
+        raise ValueError(f"{name} cannot represent the values")
     return array.reshape(shape)

@@ -1,4 +1,4 @@
-"""The database of a run, read: it may come from anyone, so nothing in it is trusted."""
+"""Reading of a run's database, which may come from a stranger: nothing in it is trusted."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from evoframe.record.layout import CONFIG_FILE, RUN_FORMAT, schema
 
 __all__ = ["Database", "Table"]
 
-# Pages that refer to each other in a made-up database may hold more rows than a computer can count.
-_STEPS_PER_BYTE = 20  # of SQLite's machine: some fifty times what a table takes that is read whole
+# In a crafted database, pages that refer to each other can hold more rows than a computer can count.
+_STEPS_PER_BYTE = 20  # of SQLite's virtual machine: about fifty times the cost of reading a whole table
 _STEPS = 100_000
 
 _TYPES: Mapping[str, type] = {"INTEGER": int, "REAL": float, "TEXT": str}
@@ -32,7 +32,7 @@ class Table:
 
     Attributes:
         columns: Names of the columns.
-        rows: A value for each column.
+        rows: Tuples with a value for each column.
     """
 
     columns: tuple[str, ...]
@@ -45,11 +45,11 @@ class Table:
 
 @attrs.define(eq=False)
 class Database:
-    """A database that is open for reading; all that is read is of one moment.
+    """A database open for reading; all reads come from one snapshot until :meth:`refresh`.
 
     Attributes:
         path: Its file.
-        closed: Whether it is not open any more.
+        closed: ``True`` after :meth:`close`.
     """
 
     path: Path
@@ -58,75 +58,74 @@ class Database:
     _version: int = attrs.field(default=0, init=False)
 
     @classmethod
-    def opened(cls, path: Path) -> Database:
-        """Return the database of a file, to be closed.
+    def open(cls, path: Path) -> Database:
+        """Open the database in a file; the caller closes it.
 
         Raises:
-            InputError: It cannot be read.
+            InputError: The file cannot be read.
         """
-        with _refusing(path):
+        with _wrap_errors(path):
             connection = sqlite3.connect(
                 f"{path.absolute().as_uri()}?mode=ro", uri=True, isolation_level=None
             )
             connection.execute("PRAGMA trusted_schema = OFF")
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_DOCUMENT << 20)
             connection.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
-            connection.execute("BEGIN")  # rows and checksums of one moment
+            connection.execute("BEGIN")  # rows and checksums from one snapshot
         return cls(path, connection)
 
     def close(self) -> None:
-        """Close it; what was read stays."""
+        """Close the database; tables that were read remain available."""
         self.closed = True
         self._connection.close()
 
-    def renewed(self) -> bool:
-        """Look at the database as it is now, and return whether somebody has written since the last time."""
-        with _refusing(self.path):
+    def refresh(self) -> bool:
+        """Take a new snapshot; return ``True`` if the database was written to since the previous one."""
+        with _wrap_errors(self.path):
             self._connection.execute("COMMIT")
             self._connection.execute("BEGIN")
         before, self._version = self._version, self._data_version()
         return before != self._version
 
     def tables(self) -> list[str]:
-        """Return the names of all tables: a view or a trigger is none, whatever it is called."""
+        """Return the names of all tables; views and triggers are excluded, whatever their names."""
         self._version = self._version or self._data_version()
         return [row[0] for row in self._fetched("SELECT name FROM sqlite_master WHERE type = 'table'")]
 
     def refuse_another(self, config: Mapping[str, Any]) -> None:
-        """Make sure that this is the database of a run with a configuration, in the format of this evoframe.
+        """Check that this is the database of a run with *config*, in the format of this evoframe.
 
-        The format comes first, since another may have other tables. Nothing is asked of a table that is not
-        to the letter one of ours: a view may be called like one.
+        The format is checked first, because other formats may have other tables. A table is queried only if
+        its definition equals the schema character for character: a view could have its name.
 
         Raises:
-            InputError: It is another, or damaged.
+            InputError: The format or the tables differ.
         """
         roles = _roles(config)
         expected = schema(roles)
         statements = [row[0] for row in self._fetched("SELECT sql FROM sqlite_master")]
-        ours = [statement for statement in expected if statement in statements and " meta " in statement]
-        formats = self._fetched("SELECT value FROM meta WHERE key = 'format'") if ours else []
+        genuine = any(" meta " in statement and statement in statements for statement in expected)
+        formats = self._fetched("SELECT value FROM meta WHERE key = 'format'") if genuine else []
         if formats != [(str(RUN_FORMAT),)]:
-            what = f"the format {formats[0][0]!r}" if formats else "no format"
-            raise InputError(
-                f"{self.path.parent}: has {what}, but this evoframe reads format {RUN_FORMAT}; read it with "
-                f"the evoframe that wrote it: {CONFIG_FILE} names its version under [provenance]"
-            )
+            found = repr(formats[0][0]) if formats else "none"
+            hint = f"read it with the version of evoframe that wrote it (see [provenance] in {CONFIG_FILE})"
+            problem = f"expected {RUN_FORMAT}, found {found}; {hint}"
+            raise InputError(problem, source=self.path, key="meta.format")
         if not roles or set(statements) != set(expected):
             raise InputError(
-                f"{self.path}: is damaged: its tables are not those of a run with this {CONFIG_FILE}"
+                f"damaged: the tables do not match the populations in {CONFIG_FILE}", source=self.path
             )
 
     def read(self, name: str) -> Table:
-        """Return a table, compared with its checksum.
+        """Read a table, and compare it with its checksum.
 
         Raises:
-            InputError: There is no such table, or it is damaged.
+            InputError: The table does not exist, or is damaged.
         """
         tables = self.tables()
         if name not in tables:
-            raise InputError(f"{self.path}: has no table '{name}'; tables: {', '.join(sorted(tables))}")
-        with self._limited():
+            raise InputError(f"no table '{name}'; tables: {', '.join(sorted(tables))}", source=self.path)
+        with self._limit_work():
             found = self._connection.execute(f'SELECT * FROM "{name}"')  # noqa: S608 - one of its tables
             table = Table(tuple(column[0] for column in found.description), found.fetchall())
         if name in (*CHAINED, *SINGLE):
@@ -135,27 +134,27 @@ class Database:
         return table
 
     def damage(self) -> list[str]:
-        """Return what SQLite finds wrong with pages, tables and indices."""
+        """Return the faults that SQLite finds in pages, tables and indices."""
         return [row[0] for row in self._fetched("PRAGMA integrity_check") if row[0] != "ok"]
 
     def _data_version(self) -> int:
-        self._fetched("SELECT 1 FROM sqlite_master LIMIT 1")  # from here on everything is of one moment
+        self._fetched("SELECT 1 FROM sqlite_master LIMIT 1")  # this starts the snapshot
         return int(self._fetched("PRAGMA data_version")[0][0])
 
     def _fetched(self, statement: str, *arguments: Any) -> list[tuple[Any, ...]]:
-        with self._limited():
+        with self._limit_work():
             return self._connection.execute(statement, arguments).fetchall()
 
     @contextlib.contextmanager
-    def _limited(self) -> Iterator[None]:
-        """Let no statement take longer than it can in a sound database of this size."""
+    def _limit_work(self) -> Iterator[None]:
+        """Interrupt statements that take longer than any can in an intact database of this size."""
         budget = iter(range(_STEPS_PER_BYTE * _size(self.path) // _STEPS + 100))
         self._connection.set_progress_handler(lambda: next(budget, None) is None, _STEPS)
-        with _refusing(self.path):
+        with _wrap_errors(self.path):
             yield
 
     def _compare_checksums(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
-        """Refuse rows that are not those that were saved."""
+        """Refuse rows that do not match their checksums."""
         saved = {
             str(name): checksum for name, checksum in self._fetched("SELECT name, checksum FROM checksums")
         }
@@ -163,10 +162,10 @@ class Database:
         expected = {name: saved[name] for name in saved if name.partition(":")[0] == table}
         names = sorted(found.keys() | expected.keys())
         if wrong := [name for name in names if found.get(name) != expected.get(name)]:
-            raise InputError(f"{self.path}: is damaged: {', '.join(wrong)} is not what was saved")
+            raise InputError("damaged: does not match its checksum", source=self.path, key=", ".join(wrong))
 
     def _refuse_types(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
-        """Refuse values of types that the columns do not declare: SQLite itself takes any."""
+        """Refuse values whose types differ from those of their columns, which SQLite itself accepts."""
         declared = self._fetched('SELECT type, "notnull", pk FROM pragma_table_info(?)', table)
         types = [
             (_TYPES[type_],) if needed or key else (_TYPES[type_], type(None))
@@ -175,28 +174,28 @@ class Database:
         for row in rows:
             if not all(map(isinstance, row, types)):
                 raise InputError(
-                    f"{self.path}: is damaged: {table} has a row with values of other types: {row}"
+                    f"damaged: a row has values of wrong types: {row}", source=self.path, key=table
                 )
 
 
 @contextlib.contextmanager
-def _refusing(path: Path) -> Iterator[None]:
+def _wrap_errors(path: Path) -> Iterator[None]:
     try:
         yield
     except (sqlite3.Error, OverflowError, UnicodeDecodeError) as error:
         journal, hint = path.with_name(f"{path.name}-wal"), ""
         if journal.is_file() and not os.access(path.parent, os.W_OK):
-            hint = f"; to read what {journal.name} has, copy the directory to where it may be written"
-        raise InputError(f"{path}: cannot be read: {error}{hint}") from error
+            hint = f"; to read {journal.name} too, copy the directory to a writable place"
+        raise InputError(f"cannot be read: {error}{hint}", source=path) from error
 
 
 def _size(path: Path) -> int:
-    """Return the bytes of a database and of what was written beside it."""
+    """Return the size of a database and its write-ahead log, in bytes."""
     return sum(part.stat().st_size for part in (path, path.with_name(f"{path.name}-wal")) if part.is_file())
 
 
 def _roles(config: Mapping[str, Any]) -> list[str]:
-    """Return the populations of a configuration, which become names of columns; none if they cannot."""
+    """Return the populations of a configuration, or none if their names cannot be names of columns."""
     populations = config.get("populations")
     if not isinstance(populations, dict) or not all(map(is_role, populations)):
         return []

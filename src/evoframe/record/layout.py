@@ -15,14 +15,14 @@ __all__ = [
 ]
 
 RUN_FORMAT = 2
-"""Version of the run directory; champion.json has its own."""
+"""Version of the format of a run's directory; champion.json has its own."""
 
 CHAMPION_FILE = "champion.json"
 CONFIG_FILE = "config.toml"
 DATABASE_FILE = "run.db"
 
 SETTLED = frozenset({"format", "configuration"})
-"""Keys of ``meta`` that are there from the beginning; the others are the figures of a finished run."""
+"""Keys of ``meta`` that are written at the start; all others are the final figures of a finished run."""
 
 VERIFICATION_FILE = "verification.json"
 """Verification of the champion."""
@@ -54,6 +54,6 @@ CREATE TABLE checksums (name TEXT PRIMARY KEY, checksum TEXT NOT NULL) WITHOUT R
 
 
 def schema(roles: Iterable[str]) -> list[str]:
-    """Return the statements that make the tables of a run's database."""
+    """Return the statements that create the tables of a run's database."""
     columns = ", ".join(f'"{role}" INTEGER NOT NULL' for role in roles)
     return [statement.strip() for statement in _SCHEMA.format(roles=columns).split(";") if statement.strip()]

@@ -1,4 +1,4 @@
-"""What a run was made with: people read it, and a run is resumed only with the same."""
+"""Provenance of a run: versions and machine, for the reader and as a condition for resuming."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["provenance_of"]
 
 
 def provenance_of(config: RunConfig) -> Tree:
-    """Return the table ``[provenance]``: versions, machine type, and where each component comes from."""
+    """Return the table ``[provenance]``: versions, machine type, and the source of each component."""
     components = dict(config.components())
     libraries = {"python": platform.python_version(), "numpy": np.__version__}
     for chosen in components.values():

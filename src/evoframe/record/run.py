@@ -1,4 +1,4 @@
-"""Finished and unfinished runs, read back from their directories."""
+"""Reading of finished and unfinished runs from their directories."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import attrs
 
 from evoframe.errors import InputError
 from evoframe.files import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text, refuse_links
-from evoframe.record.champion import Champion, champion_from_json
+from evoframe.record.champion import Champion, champion_from_json, joined_key
 from evoframe.record.checksums import CHAINED, SINGLE
 from evoframe.record.database import Database, Table
 from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, DATABASE_FILE, SETTLED, VERIFICATION_FILE
@@ -23,12 +23,12 @@ __all__ = ["Report", "Run", "load_run", "open_run", "open_unchecked"]
 
 @attrs.frozen
 class Report:
-    """A report that was written.
+    """A written report.
 
     Attributes:
-        directory: Where it is.
-        words: Its conclusions, as ``conclusions.txt`` has them.
-        files: All its files.
+        directory: Its directory.
+        words: Its conclusions, as in ``conclusions.txt``.
+        files: Paths of all its files.
     """
 
     directory: Path
@@ -38,15 +38,15 @@ class Report:
 
 @attrs.define
 class Run:
-    """A run's directory, read once: its configuration is checked, and so is each table when it is read.
+    """A run's directory. Its configuration is checked on opening, and each table when it is read.
 
-    Within ``with open_run(directory) as run`` a table is read when it is first asked for. What
-    :func:`load_run`, :func:`evoframe.run` and :func:`evoframe.resume` return has all of them.
+    Inside ``with open_run(directory) as run`` each table is read on first use. Runs returned by
+    :func:`load_run`, :func:`evoframe.run` and :func:`evoframe.resume` hold all tables.
 
     Attributes:
         directory: Its path.
         config: The resolved configuration, as TOML tables.
-        begun: Whether the database has tables: not so after a very early kill.
+        begun: ``True`` if the database has tables; a kill at the very start can leave none.
     """
 
     directory: Path = attrs.field(on_setattr=attrs.setters.frozen)
@@ -56,7 +56,7 @@ class Run:
     _database: Database | None = attrs.field(default=None, eq=False, repr=False, kw_only=True)
 
     def turns(self) -> list[dict[str, Any]]:
-        """Return a row for each population that was judged in a turn: best, best_so_far, mean, ..."""
+        """Return a row for each population evaluated in each turn: best, best_so_far, mean, ..."""
         return self.table("turns")
 
     def individuals(self) -> list[dict[str, Any]]:
@@ -72,35 +72,35 @@ class Run:
         return self.table("workload")
 
     def resumes(self) -> list[dict[str, Any]]:
-        """Return a row for each time the run was resumed: after which turn, with which differences."""
+        """Return a row for each resume: the last turn before it, and differences of versions or machine."""
         return self.table("resumes")
 
     def summary(self) -> dict[str, Any]:
-        """Return the final figures; none as long as the run is not finished."""
+        """Return the final figures; empty until the run is finished."""
         return {key: value for key, value in self._documents("meta").items() if key not in SETTLED}
 
     def finished(self) -> bool:
-        """Return whether the run has come to its end."""
+        """Return ``True`` if the run is finished."""
         return bool(self.summary())
 
     def last_turn(self) -> int | None:
-        """Return the index of the last turn that is saved; ``None`` if there is none."""
+        """Return the index of the last saved turn; ``None`` if no turn is saved."""
         rows = self.rows("workload")
         return int(rows[-1][0]) if rows else None
 
     def configuration(self) -> dict[str, Any]:
-        """Return the tables that decide the run, as the database has them; they must equal those of *config*.
+        """Return the tables that determine the result, as saved at the start; *config* must have the same.
 
         Raises:
             InputError: The database is damaged.
         """
         configuration = self._documents("meta").get("configuration")
         if not isinstance(configuration, dict):
-            raise InputError(f"{self.directory / DATABASE_FILE}: meta: has no configuration")
+            raise InputError("missing", source=self.directory / DATABASE_FILE, key="meta.configuration")
         return configuration
 
     def state(self) -> dict[str, Any]:
-        """Return what the loop continues from; empty as long as no turn is saved.
+        """Return the state from which the run is resumed; empty until a turn is saved.
 
         Raises:
             InputError: The database is damaged.
@@ -111,23 +111,24 @@ class Run:
         """Return the best pair so far.
 
         Raises:
-            InputError: There is none yet, or the database is damaged.
+            InputError: No pair has a score yet, or the database is damaged.
         """
         document, path = self.champion_document(), self.directory / DATABASE_FILE
         if document is None:
-            raise InputError(f"{path}: has no pair with a score yet")
+            raise InputError("no pair has a score yet", source=path)
         try:
             return champion_from_json(document)
-        except ValueError as error:
-            raise InputError(f"{path}: best_pairs: {error}") from error
+        except InputError as error:
+            key = joined_key("best_pairs", error.key)
+            raise InputError(error.problem, source=path, key=key) from error
 
     def champion_document(self) -> str | None:
-        """Return the text of champion.json, without its last line end; ``None`` before the first champion."""
+        """Return the text of champion.json without the final newline; ``None`` before the first champion."""
         rows = self.table("best_pairs")
         return rows[-1]["document"] if rows else None
 
     def champion_is_written(self) -> bool:
-        """Return whether champion.json is what the database has; it may be behind where a run was killed."""
+        """Return ``True`` if champion.json equals the database; after a kill the file can be out of date."""
         path, document = self.directory / CHAMPION_FILE, self.champion_document()
         if document is None:
             return True
@@ -136,49 +137,51 @@ class Run:
         return same_size and path.read_bytes() == expected
 
     def verification(self) -> Verification | None:
-        """Return what became of the champion with one thing changed at a time; ``None`` if nobody has looked.
+        """Return the verification of the champion; ``None`` if it was not verified.
 
         Raises:
-            InputError: The file is damaged, or is about another champion.
+            InputError: The file is damaged, or verifies a different champion.
         """
         path = self.directory / VERIFICATION_FILE
         if not path.exists():
             return None
-        again = f"to make it anew: evoframe verify {self.directory}"
+        hint = f"to verify again: evoframe verify {self.directory}"
         text = read_text(path, LARGEST_DOCUMENT)
         try:
             verification = verification_from_json(parsed_json(text))
         except ValueError as error:
-            raise InputError(f"{path}: {error}; {again}") from error
-        if verification.score != self.champion().score:
-            raise InputError(f"{path}: is about another champion; {again}")
+            raise InputError(f"{error}; {hint}", source=path) from error
+        except InputError as error:
+            raise InputError(f"{error.problem}; {hint}", source=path, key=error.key) from error
+        expected = self.champion().score
+        if verification.score != expected:
+            found = f"the champion scores {expected!r}, found the verification of {verification.score!r}"
+            raise InputError(f"{found}; {hint}", source=path, key="score")
         return verification
 
     def report(self, out: str | Path | None = None, *, correction: str = "holm") -> Report:
         """Write the report of this run: see :func:`evoframe.report`."""
-        public = importlib.import_module(
-            "evoframe"
-        )  # reports stand above the record: looked up when asked for
+        public = importlib.import_module("evoframe")  # late, because reports depend on this module
         report: Report = public.report(self, out=out, correction=correction)
         return report
 
     def check(self) -> None:
-        """Look at the form of the database, before anything in it is read; :func:`open_run` has done so.
+        """Check the format and the tables of the database before it is read; :func:`open_run` calls this.
 
         Raises:
-            InputError: It is of another format or run, or damaged.
+            InputError: The format or the tables differ, or the database is damaged.
         """
-        self.begun = False  # unless it can be read
+        self.begun = False  # in case the next line fails
         self.begun = self._database is not None and bool(self._database.tables())
         if self._database is not None and self.begun:
             self._database.refuse_another(self.config)
 
     def damage(self) -> list[str]:
-        """Return what SQLite finds wrong with the database; the run must be open."""
+        """Return the faults that SQLite finds in the database; the run must be open."""
         return self._opened().damage()
 
     def read_all(self) -> None:
-        """Read all tables, so that the run can be closed.
+        """Read all tables, so that they remain available after the run is closed.
 
         Raises:
             InputError: A table is damaged.
@@ -187,21 +190,21 @@ class Run:
             self._read(table)
 
     def outdated(self) -> bool:
-        """Return whether somebody has written since the run was opened; it must be open.
+        """Return ``True`` if the database was written to since the run was opened; the run must be open.
 
-        What is read from now on is of now.
+        Tables read from now on have their present content.
         """
         if self._database is None:
             return (self.directory / DATABASE_FILE).is_file()
-        return self._database.renewed()
+        return self._database.refresh()
 
     def close(self) -> None:
-        """Let others write; what was read stays."""
+        """Close the database, so that others can write; tables that were read remain available."""
         if self._database is not None:
             self._database.close()
 
     def table(self, name: str) -> list[dict[str, Any]]:
-        """Return the rows of a table of the database, column -> value, in the order of their keys.
+        """Return the rows of a table of the database as column -> value, in the order of their keys.
 
         Raises:
             InputError: The database is damaged, or has no such table.
@@ -210,7 +213,7 @@ class Run:
         return self._read(name).records()
 
     def rows(self, name: str) -> Sequence[tuple[Any, ...]]:
-        """Return the rows of a table as they were saved.
+        """Return the rows of a table as tuples, in the order of their keys.
 
         Raises:
             InputError: As :meth:`table`.
@@ -224,31 +227,32 @@ class Run:
         return self._tables[name]
 
     def _opened(self) -> Database:
-        if self._database is None:  # or it is a run of this process, which has no such table
-            raise InputError(f"{self.directory / DATABASE_FILE}: there is no such file or table")
+        if self._database is None:  # no file; or a run of this process, which holds all tables there are
+            raise InputError("no such file or table", source=self.directory / DATABASE_FILE)
         if self._database.closed:
-            raise ValueError(f"{self.directory}: this run was closed; read it within `with open_run(...)`")
+            raise ValueError(f"{self.directory}: the run is closed; read tables inside `with open_run(...)`")
         if not self.begun:
             self._database.refuse_another(self.config)
         return self._database
 
     def _documents(self, table: str) -> dict[str, Any]:
-        """Return a table of JSON documents: the first column -> the last."""
+        """Return a table of JSON documents as first column -> last column."""
         documents = {}
         for key, *_, text in self.rows(table):
             try:
                 documents[key] = parsed_json(text)
             except ValueError as error:
-                raise InputError(f"{self.directory / DATABASE_FILE}: {table}: {key}: {error}") from error
+                path = self.directory / DATABASE_FILE
+                raise InputError(str(error), source=path, key=f"{table}.{key}") from error
         return documents
 
 
 @contextlib.contextmanager
 def open_run(directory: str | Path) -> Iterator[Run]:
-    """Open a run's directory: its configuration and the form of its database are read and checked, once.
+    """Open a run's directory, and check its configuration and the format and tables of its database.
 
     Raises:
-        InputError: It is no run's directory, one of another format, or damaged.
+        InputError: It is not a run's directory, has a different format, or is damaged.
     """
     with open_unchecked(directory) as run:
         run.check()
@@ -257,14 +261,14 @@ def open_run(directory: str | Path) -> Iterator[Run]:
 
 @contextlib.contextmanager
 def open_unchecked(directory: str | Path) -> Iterator[Run]:
-    """Open a run's directory whose database nobody has looked at: call :meth:`Run.check` first.
+    """Open a run's directory without checking its database: call :meth:`Run.check` first.
 
     Raises:
-        InputError: It is no run's directory, or its configuration is damaged.
+        InputError: It is not a run's directory, or its configuration is damaged.
     """
     directory = Path(directory)
     config, path = _config(directory), directory / DATABASE_FILE
-    database = Database.opened(path) if path.is_file() else None
+    database = Database.open(path) if path.is_file() else None
     run = Run(directory, config, database=database)
     try:
         yield run
@@ -273,10 +277,10 @@ def open_unchecked(directory: str | Path) -> Iterator[Run]:
 
 
 def load_run(directory: str | Path) -> Run:
-    """Return the run in *directory*, all of it.
+    """Return the run in *directory* with all its tables.
 
     Raises:
-        InputError: As :func:`open_run`, or a table is damaged, or nothing was saved yet.
+        InputError: As :func:`open_run`, or a table is damaged, or nothing is saved yet.
     """
     with open_run(directory) as run:
         run.read_all()
@@ -284,19 +288,22 @@ def load_run(directory: str | Path) -> Run:
 
 
 def _config(directory: Path) -> dict[str, Any]:
-    """Return the tables of a run's configuration, which is complete: it must not make us read other files."""
+    """Return the tables of a run's configuration; one that extends another file is refused."""
     path = directory / CONFIG_FILE
     refuse_links(directory)
     journal = directory / f"{DATABASE_FILE}-journal"
     if journal.exists():
-        raise InputError(f"{journal}: is of another program, which has left {DATABASE_FILE} half written")
+        raise InputError(
+            f"leftover rollback journal: another program modified {DATABASE_FILE}", source=journal
+        )
     if not path.is_file():
-        raise InputError(f"{directory}: is no run's directory: there is no {CONFIG_FILE}")
+        raise InputError(f"not a run directory: no {CONFIG_FILE}", source=directory)
     tables = parsed_toml(read_text(path, LARGEST_DOCUMENT), str(path))
     if tables.get("extends") is not False:
         found = repr(tables["extends"]) if "extends" in tables else "nothing"
-        what = "extends: a run's configuration is complete"
-        raise InputError(f"{path}: {what}; expected false, found {found}")
+        problem = f"expected false, because the configuration of a run is complete; found {found}"
+        raise InputError(problem, source=path, key="extends")
     if not isinstance(tables.get("provenance", {}), dict):
-        raise InputError(f"{path}: provenance: expected a table, found {tables['provenance']!r}")
+        found = repr(tables["provenance"])
+        raise InputError(f"expected a table, found {found}", source=path, key="provenance")
     return tables

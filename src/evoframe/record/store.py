@@ -1,4 +1,4 @@
-"""A run's directory: configuration, database, champion; one process writes, ordinary tools read."""
+"""Writing of a run's directory: database and champion. One process writes; any tool can read."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ Exports: TypeAlias = Callable[[Design], Mapping[str, bytes | None]]
 
 _log = logging.getLogger(__name__)
 
-# The way from and to the write-ahead log is one write of one page. A journal of it, left by a kill, could be
-# undone by nobody who may only read, and names files that whoever undoes it touches.
+# Entering or leaving write-ahead logging writes one page, so it needs no rollback journal in a file. Such a
+# file, left by a kill, would stop readers without write permission, and can name files to be modified.
 _WITHOUT_A_JOURNAL = "PRAGMA journal_mode = MEMORY"
 
-_SYNC_INTERVAL = 1.0  # s; a power cut loses at most what was written since the last synchronisation
+_SYNC_INTERVAL = 1.0  # s; a power cut loses at most the turns since the last synchronization
 
 
 @attrs.define
 class Store:
-    """The directory of a run that is being written, by this process and no other.
+    """The directory of a run that only this process writes to.
 
-    All methods raise :class:`RunError` when the disk does not take what they write.
+    All methods raise :class:`RunError` if writing fails.
 
     Attributes:
         directory: The run's directory.
-        simulation: What is needed to simulate the champion again, for its file.
-        exports: Gives the champion as files of other programs: ending -> bytes, ``None`` for no file.
-        last_turn: The last turn that is saved; -1 if there is none.
+        simulation: The tables needed to simulate the champion again, for its file.
+        exports: Converts the champion to files of other programs: suffix -> bytes, ``None`` for no file.
+        last_turn: Index of the last saved turn; -1 if no turn is saved.
     """
 
     directory: Path
@@ -64,31 +64,31 @@ class Store:
     def open(
         cls, directory: Path, simulation: Mapping[str, Any], lock: Lock, exports: Exports = lambda _: {}
     ) -> Store:
-        """Open the database of a directory, or make it; :meth:`begin` or :meth:`go_on` comes next.
+        """Open or create the database of a directory; :meth:`begin` or :meth:`resume` must follow.
 
         Raises:
-            InputError: It cannot be written.
+            InputError: The database cannot be written.
         """
-        return cls(directory, simulation, exports, lock, _opened(directory / DATABASE_FILE))
+        return cls(directory, simulation, exports, lock, _open_database(directory / DATABASE_FILE))
 
     def begin(self, roles: Sequence[str], configuration: Mapping[str, Any]) -> None:
-        """Lay the database out.
+        """Create the tables of the database.
 
         Args:
             roles: Names of the populations, in order.
-            configuration: The tables that decide the run, which must be the same when it goes on.
+            configuration: The tables that determine the result; they must be the same on a resume.
         """
         with self._transaction():
             for statement in schema(roles):
                 self._database.execute(statement)
             self._replace("meta", [("format", str(RUN_FORMAT)), ("configuration", json_text(configuration))])
 
-    def go_on(self, rows: Mapping[str, Sequence[tuple[Any, ...]]], differences: Sequence[str]) -> None:
-        """Continue where a run was left, and note the resume unless no turn is left.
+    def resume(self, rows: Mapping[str, Sequence[tuple[Any, ...]]], differences: Sequence[str]) -> None:
+        """Continue after the last saved turn, and record the resume unless the run is finished.
 
         Args:
-            rows: Table -> its rows, as they were read.
-            differences: What is not as when the run began.
+            rows: Table -> its rows, as read.
+            differences: Changes of versions and machine since the run started.
         """
         for table, saved in rows.items():
             self._keep(table, saved)
@@ -103,29 +103,29 @@ class Store:
 
     @property
     def finished(self) -> bool:
-        """Whether the final figures are noted."""
+        """``True`` if the final figures are saved."""
         return bool(self._rows["meta"].keys() - SETTLED)
 
     def tables(self) -> dict[str, Table]:
-        """Return all that is saved, as it would be read back; the store must be open."""
+        """Return all tables as they would be read back; the store must be open."""
         tables = {}
         for name in (*CHAINED, *SINGLE):
             with self._writing():
-                none = self._database.execute(f'SELECT * FROM "{name}" LIMIT 0')  # noqa: S608 - one of ours
+                none = self._database.execute(f'SELECT * FROM "{name}" LIMIT 0')  # noqa: S608 - a constant name
             columns = tuple(column[0] for column in none.description)
             tables[name] = Table(columns, [row for _, row in sorted(self._rows.get(name, {}).items())])
         return tables
 
     def save(self, turn: Turn, state: Mapping[str, Any]) -> None:
-        """Save a turn and the state after it, both or neither; the files of a new champion may follow later.
+        """Save a turn and the state after it in one transaction; files of a new champion can follow later.
 
         Args:
             turn: The turn.
-            state: Part -> JSON values; parts that did not change may be left out.
+            state: Part -> JSON values; unchanged parts can be omitted.
         """
         champion = champion_document(turn.best_pair, self.simulation) if turn.best_pair else None
         with self._transaction():
-            reports = sorted(turn.reports, key=lambda report: report.population)  # as the keys of the rows
+            reports = sorted(turn.reports, key=lambda report: report.population)  # the order of the keys
             index, work = turn.index, turn.workload
             self._insert(
                 "turns",
@@ -161,17 +161,17 @@ class Store:
         self.last_turn = index
         if champion and turn.best_pair:
             self._unwritten = champion, turn.best_pair.design
-        # A turn that takes long is likely to be followed by such a one.
-        self._synchronise(at_once=work.seconds > _SYNC_INTERVAL / 4)
+        # After a slow turn the next one is probably slow too, so do not wait for it.
+        self._synchronize(at_once=work.seconds > _SYNC_INTERVAL / 4)
 
     def update_champion(self) -> None:
-        """Write the files of the best pair that is saved, if they are those of an earlier one."""
+        """Write the champion's files, if they are those of an earlier champion."""
         if self._unwritten is not None:
             self.save_champion(*self._unwritten)
             self._unwritten = None
 
     def save_champion(self, document: Mapping[str, Any], design: Design) -> None:
-        """Write the champion's files, champion.json as the last: where it is written, all are."""
+        """Write the champion's files, with champion.json last: its presence means that all are written."""
         for ending, data in self.exports(design).items():
             path = self.directory / f"champion.{ending}"
             if data is None:
@@ -181,24 +181,26 @@ class Store:
         write_json(self.directory / CHAMPION_FILE, document)
 
     def finish(self, result: Mapping[str, Any]) -> None:
-        """Note the final figures."""
+        """Save the final figures."""
         self.update_champion()
         with self._transaction():
             self._replace("meta", [(key, json_text(value)) for key, value in result.items()])
 
     def close(self) -> None:
-        """Leave one self-contained database file, unless somebody is reading it just now."""
+        """Unlock the directory; merge the write-ahead log into the database unless a reader has it open."""
         with contextlib.ExitStack() as stack:
             stack.callback(self._lock.release)
             stack.callback(self._database.close)
             try:
                 self._database.execute(_WITHOUT_A_JOURNAL)
             except sqlite3.Error as error:
-                _log.info("%s: the journal stays beside the database: %s", self.directory, error)
+                _log.info(
+                    "%s: the write-ahead log could not be merged into the database: %s", self.directory, error
+                )
             self.update_champion()
 
     def _insert(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
-        """Add rows to a table that only grows, in the order of their keys."""
+        """Append rows to an append-only table, in the order of their keys."""
         listed = [tuple(map(_signless, row)) for row in rows]
         if listed:
             self._write("INSERT", table, listed)
@@ -207,7 +209,7 @@ class Store:
             self._changed.append(self._checksums.of(table))
 
     def _replace(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
-        """Put rows in place of those with the same keys."""
+        """Insert rows, replacing those with the same keys."""
         if not rows:
             return
         self._write("INSERT OR REPLACE", table, rows)
@@ -215,7 +217,7 @@ class Store:
         self._changed += [Checksums.of_row(table, row) for row in rows]
 
     def _keep(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
-        """Keep rows in memory too, so that nobody has to read back what this process has written."""
+        """Keep rows in memory too, so that they need not be read back."""
         kept = self._rows.setdefault(table, {})
         for row in rows:
             kept[row[0] if table in SINGLE else len(kept)] = row
@@ -226,8 +228,8 @@ class Store:
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
-        if self._broken:  # what is kept in memory is not what was saved
-            raise RunError(f"{self.directory}: nothing more can be saved after a failure")
+        if self._broken:  # rows in memory differ from those in the database
+            raise RunError("cannot save turns after a failed write", source=self.directory)
         with self._writing():
             self._broken = True
             try:
@@ -246,9 +248,9 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
-            raise RunError(f"{self.directory}: the database cannot be written: {error}") from error
+            raise RunError(f"cannot write the database: {error}", source=self.directory) from error
 
-    def _synchronise(self, *, at_once: bool) -> None:
+    def _synchronize(self, *, at_once: bool) -> None:
         if at_once or time.monotonic() - self._synced >= _SYNC_INTERVAL:
             with self._writing():
                 self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
@@ -257,12 +259,12 @@ class Store:
 
 
 def _signless(value: Any) -> Any:
-    """Return a value as the database keeps it, which has no sign of a zero."""
+    """Return a value as SQLite stores it, which drops the sign of zero."""
     return value + 0.0 if isinstance(value, float) else value
 
 
 def _state(part: str, values: Any) -> str:
-    """Return a part of the state as text; one that cannot be JSON is its evolver's fault, if it has one."""
+    """Return a part of the state as JSON text; blame its evolver if it cannot be JSON."""
     try:
         return json_text(values)
     except (TypeError, ValueError, RecursionError) as error:
@@ -270,18 +272,18 @@ def _state(part: str, values: Any) -> str:
         problem = f"its state cannot be saved as JSON: {error}"
         if kind == "population":
             raise ComponentError(f"populations.{population}.evolver", problem) from error
-        raise RunError(f"{part}: {problem}") from error
+        raise RunError(problem, key=part) from error
 
 
-def _opened(path: Path) -> sqlite3.Connection:
-    """Open a database that survives a kill at any moment; see ``_SYNC_INTERVAL`` for a power cut."""
+def _open_database(path: Path) -> sqlite3.Connection:
+    """Open a database so that it survives a kill at any moment; for power cuts see ``_SYNC_INTERVAL``."""
     try:
         database = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
         if database.execute("PRAGMA journal_mode").fetchone() != ("wal",):
             database.execute(_WITHOUT_A_JOURNAL)
         database.execute("PRAGMA journal_mode = WAL")
         database.execute("PRAGMA synchronous = NORMAL")
-        database.execute("PRAGMA wal_autocheckpoint = 0")  # it has its own times, see _SYNC_INTERVAL
+        database.execute("PRAGMA wal_autocheckpoint = 0")  # done by _synchronize
     except sqlite3.Error as error:
-        raise InputError(f"{path}: cannot be written: {error}") from error
+        raise InputError(f"cannot be written: {error}", source=path) from error
     return database

@@ -1,4 +1,4 @@
-"""Is a score real? A design simulated again with one thing changed at a time."""
+"""Verification of a score: the design is simulated again with one thing changed at a time."""
 
 from __future__ import annotations
 
@@ -11,24 +11,25 @@ from typing import Any
 import attrs
 
 from evoframe.contract import Score
+from evoframe.errors import InputError
 from evoframe.files import write_json
 from evoframe.record.layout import VERIFICATION_FILE
 
 __all__ = ["UNCHANGED", "Finding", "Verification", "keep_verification", "verification_from_json"]
 
 UNCHANGED = "unchanged"
-"""Name of the simulation that the others are compared with."""
+"""Name of the unchanged simulation, with which all others are compared."""
 
 _FORMAT = 1
 
 
 @attrs.frozen
 class Finding:
-    """What became of a design with one thing changed.
+    """The scores of a design with one thing changed.
 
     Attributes:
-        name: What was changed.
-        scores: One for each draw, where the change is random; otherwise one.
+        name: Name of the change.
+        scores: One score per draw if the change is random, else one score.
     """
 
     name: str
@@ -53,13 +54,13 @@ class Finding:
 
 @attrs.frozen
 class Verification:
-    """The table of paper.md, "What the published setting really rewards", of one design.
+    """The verification table of one design (docs/experiment.md, "What the setting rewards").
 
     Attributes:
-        unchanged: The design as it is.
-        findings: What became of it with one thing changed, in the order of the simulator.
-        unit: Of all scores; empty if the objective does not say.
-        score: What the design scored in its run, if it is a champion that is simulated as it was there.
+        unchanged: Score of the unchanged design.
+        findings: Its scores with one thing changed, in the order of the simulator's variants.
+        unit: Unit of all scores; empty if the objective declares none.
+        score: Its score in the run, if the design is a champion simulated as in its run.
     """
 
     unchanged: Score
@@ -69,11 +70,11 @@ class Verification:
 
     @property
     def rows(self) -> tuple[Finding, ...]:
-        """The unchanged design as a finding, and then the others."""
+        """The unchanged design as a finding, followed by all other findings."""
         return (Finding(UNCHANGED, (self.unchanged,)), *self.findings)
 
     def share(self, finding: Finding) -> float | None:
-        """Return the median of *finding* as a part of the unchanged score; ``None`` where there is none."""
+        """Return the median of *finding* as a fraction of the unchanged score; ``None`` if undefined."""
         if finding.median is None or not self.unchanged.value:
             return None
         share = finding.median / self.unchanged.value
@@ -101,36 +102,36 @@ class Verification:
 
 
 def keep_verification(directory: Path, verification: Verification) -> None:
-    """Write the verification of a run's champion beside it, so that :meth:`Run.verification` finds it.
+    """Write the verification of a run's champion to the run's directory, for :meth:`Run.verification`.
 
     Raises:
-        RunError: It cannot be written.
+        RunError: The file cannot be written.
     """
     write_json(directory / VERIFICATION_FILE, verification.to_json())
 
 
 def verification_from_json(document: Any) -> Verification:
-    """Return the verification that :meth:`Verification.to_json` described.
+    """Return the verification that :meth:`Verification.to_json` wrote.
 
     Raises:
-        ValueError: It is not such a document; says why.
+        InputError: The document is not a verification.
     """
     if not isinstance(document, Mapping) or "variants" not in document:
-        raise ValueError("this JSON is no verification of evoframe")
+        raise InputError("not a verification of evoframe")
     if document.get("format") is True or document.get("format") != _FORMAT:
-        raise ValueError(f"format {document.get('format')!r}, but this evoframe reads format {_FORMAT}")
+        raise InputError(f"expected {_FORMAT}, found {document.get('format')!r}", key="format")
     try:
         rows = [_finding(row) for row in document["variants"]]
         if not rows or len(rows[0].scores) != 1:
-            raise ValueError("expected one score of the unchanged design")  # noqa: TRY301 - as all others
+            raise ValueError("expected one score of the unchanged design")  # noqa: TRY301 - wrapped below
         verification = Verification(rows[0].scores[0], tuple(rows[1:]), document["unit"], document["score"])
         same = verification.to_json() == document
     except ValueError as error:
-        raise ValueError(f"not as evoframe writes it: {error}") from error
+        raise InputError(f"not written by evoframe: {error}", key="variants") from error
     except (AttributeError, KeyError, TypeError) as error:
-        raise ValueError("not as evoframe writes it: its rows are damaged") from error
+        raise InputError("not written by evoframe: damaged rows", key="variants") from error
     if not same:
-        raise ValueError("not as evoframe writes it: its figures do not follow from its scores")
+        raise InputError("not written by evoframe: its figures do not follow from its scores")
     return verification
 
 

@@ -1,4 +1,4 @@
-"""Runs from start to end: starting, executing, resuming and checking them."""
+"""Runs from start to end: starting, executing, resuming and checking."""
 
 from evoframe.runs.doctor import Check, State, check_installation, check_run
 from evoframe.runs.execution import Execution, verify_champion

@@ -1,4 +1,4 @@
-"""Is everything in order? An installation, or a run's directory, looked at without changing anything."""
+"""Checks of an installation or of a run's directory, without changing anything."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ State: TypeAlias = Literal["ok", "note", "problem"]
 
 @attrs.frozen
 class Check:
-    """What was looked at, and what was found.
+    """The result of one check.
 
     Attributes:
-        subject: What was looked at.
-        state: ``ok``; ``note`` for what a person should know; ``problem`` for what must be mended.
-        finding: What was found.
+        subject: Name of the check.
+        state: ``ok``; ``note`` for information that matters; ``problem`` for a fault to be fixed.
+        finding: The result as a sentence.
     """
 
     subject: str
@@ -43,32 +43,32 @@ class Check:
 
 
 def check_installation(plugins: Plugins) -> Iterator[Check]:
-    """Yield what is found out about an installation, one thing after the other."""
+    """Check an installation, and yield each result as soon as it is known."""
     for skipped in plugins.skipped:
         yield Check("plugins", "problem", f"{skipped.source} is skipped: {skipped.cause}")
     sources = {f"{source.distribution} {source.version}" for source in (o.source for o in plugins.offers)}
-    found = f"{len(plugins.offers)} components of {', '.join(sorted(sources)) or 'nobody'}"
+    found = f"{len(plugins.offers)} components from {', '.join(sorted(sources)) or 'no plugin'}"
     yield Check("plugins", "ok" if plugins.offers else "problem", found)
-    yield _checked("versions", lambda: _versions(load_config("paper", plugins=plugins)))
-    yield _checked("simulation", lambda: _first_meeting(plugins))
+    yield _check("versions", lambda: _versions(load_config("paper", plugins=plugins)))
+    yield _check("simulation", lambda: _initial_meeting(plugins))
 
 
 def check_run(directory: Path, plugins: Plugins) -> Iterator[Check]:
-    """Yield what is found out about a run's directory, up to what makes more of it meaningless.
+    """Check a run's directory, and yield each result; a problem ends the checks that depend on it.
 
     Raises:
-        InputError: It is no run's directory, or another process is writing to it.
+        InputError: It is not a run's directory, or another process is writing to it.
     """
-    with _undisturbed(directory), open_unchecked(directory) as run:
+    with _locked_if_writable(directory), open_unchecked(directory) as run:
         yield from _check_files(run, plugins)
 
 
 def _check_files(run: Run, plugins: Plugins) -> Iterator[Check]:
-    readable = _checked("format", lambda: _format(run))
+    readable = _check("format", lambda: _format(run))
     if not run.begun:
         if readable.state == "ok":
             todo = f"evoframe resume {run.directory}"
-            finding = f"has no tables: killed before anything was saved; to begin: {todo}"
+            finding = f"no tables: the run was killed before its first save; to start it: {todo}"
             yield Check("database", "note", finding)
         else:
             yield Check("database", "problem", readable.finding)
@@ -76,31 +76,31 @@ def _check_files(run: Run, plugins: Plugins) -> Iterator[Check]:
     yield readable
     if readable.state == "problem":
         return
-    yield (sound := _checked("database", lambda: _database(run)))
+    yield (intact := _check("database", lambda: _database(run)))
     try:
         config = configuration_of(run, (), plugins)
     except EvoframeError as error:
         yield Check("configuration", "problem", full_text(error))
         return
-    yield Check("configuration", "ok", "can be used with the plugins that are installed")
-    if sound.state == "problem":
+    yield Check("configuration", "ok", "valid with the installed plugins")
+    if intact.state == "problem":
         return
     yield _versions_then_and_now(run, config)
-    yield _checked("turns", lambda: _turns(run, config))
-    yield _checked("state", lambda: _state(run, config))
-    yield _checked("champion", lambda: _champion(run, config))
+    yield _check("turns", lambda: _turns(run, config))
+    yield _check("state", lambda: _state(run, config))
+    yield _check("champion", lambda: _champion(run, config))
 
 
-def _checked(subject: str, look: Callable[[], str]) -> Check:
+def _check(subject: str, examine: Callable[[], str]) -> Check:
     try:
-        return Check(subject, "ok", look())
+        return Check(subject, "ok", examine())
     except EvoframeError as error:
         return Check(subject, "problem", full_text(error))
 
 
 @contextlib.contextmanager
-def _undisturbed(directory: Path) -> Iterator[None]:
-    """Keep others from writing meanwhile; where nobody ever wrote or may write, nothing is made for that."""
+def _locked_if_writable(directory: Path) -> Iterator[None]:
+    """Lock the directory, unless its lock file is missing or read-only: no file is created or changed."""
     path = directory / LOCK_FILE
     with contextlib.ExitStack() as stack:
         if path.is_file() and not path.is_symlink() and os.access(path, os.W_OK):
@@ -114,8 +114,8 @@ def _versions(config: RunConfig) -> str:
     return f"evoframe {found['evoframe']} on {found['machine']}, {found['c_library']}; {libraries}"
 
 
-def _first_meeting(plugins: Plugins) -> str:
-    """Begin a small run that is saved nowhere."""
+def _initial_meeting(plugins: Plugins) -> str:
+    """Simulate the initial meeting of a small run, without saving it."""
     config = load_config("quick", overrides=["run.generations=0"], plugins=plugins)
     with assemble(config) as coevolution:
         turn = next(iter(coevolution))
@@ -126,54 +126,54 @@ def _first_meeting(plugins: Plugins) -> str:
 
 def _format(run: Run) -> str:
     run.check()
-    return f"written by evoframe {run.config.get('provenance', {}).get('evoframe', 'of an unknown version')}"
+    return f"written by evoframe {run.config.get('provenance', {}).get('evoframe', '(version unknown)')}"
 
 
 def _database(run: Run) -> str:
     damage = run.damage()
     if damage:
         raise InputError(f"damaged: {'; '.join(damage)}")
-    count = sum(len(run.rows(table)) for table in (*CHAINED, *SINGLE))  # compares their checksums
-    return f"{count:,} rows, all as they were saved"
+    count = sum(len(run.rows(table)) for table in (*CHAINED, *SINGLE))  # verifies their checksums
+    return f"{count:,} rows match their checksums"
 
 
 def _versions_then_and_now(run: Run, config: RunConfig) -> Check:
     changes = differences(run.config.get("provenance", {}), provenance_of(config))
     if not changes:
-        return Check("versions", "ok", "those that the run began with")
-    return Check("versions", "note", f"not those that the run began with: {'; '.join(changes)}")
+        return Check("versions", "ok", "unchanged since the start of the run")
+    return Check("versions", "note", f"changed since the start of the run: {'; '.join(changes)}")
 
 
 def _turns(run: Run, config: RunConfig) -> str:
-    for fault in _faults_of_turns(run, config):
-        raise InputError(fault)
+    for table, fault in _faults_of_turns(run, config):
+        raise InputError(fault, key=table)
     last, length = run.last_turn(), config.run.generations * len(config.populations)
     if run.finished():
         return f"finished after {length} turns"
-    done = "none is saved" if last is None else f"saved up to {last} of {length}"
-    return f"{done}; to go on: evoframe resume {run.directory}"
+    done = "no turn is saved" if last is None else f"saved up to turn {last} of {length}"
+    return f"{done}; to resume: evoframe resume {run.directory}"
 
 
-def _faults_of_turns(run: Run, config: RunConfig) -> Iterator[str]:
-    """Yield where rows are missing, or contradict each other."""
+def _faults_of_turns(run: Run, config: RunConfig) -> Iterator[tuple[str, str]]:
+    """Yield tables whose rows are incomplete or contradict other tables, each with the fault."""
     work, roles = run.workload(), list(config.populations)
     turns = range(len(work))
     if [row["turn"] for row in work] != list(turns):
-        yield "workload: turns are missing"
-    judged = {(turn, role) for turn in turns for role in _judged(turn, roles, config)}
-    if {(row["turn"], row["population"]) for row in run.turns()} != judged:
-        yield "turns: not those populations were judged whose turn it was"
+        yield "workload", "turns are missing"
+    evaluated = {(turn, role) for turn in turns for role in _evaluated(turn, roles, config)}
+    if {(row["turn"], row["population"]) for row in run.turns()} != evaluated:
+        yield "turns", "the evaluated populations differ from those whose turn it was"
     members = Counter((row["turn"], row["population"]) for row in run.individuals())
-    if members != {(turn, role): config.populations[role].size for turn, role in judged}:
-        yield "individuals: not as many as the populations have"
+    if members != {(turn, role): config.populations[role].size for turn, role in evaluated}:
+        yield "individuals", "their number differs from the sizes of the populations"
     pairs = Counter(row["turn"] for row in run.pairs())
     if pairs != {row["turn"]: row["pairs"] for row in work if row["pairs"]}:
-        yield "pairs: not as many as in workload"
+        yield "pairs", "their number differs from the table workload"
     yield from _faults_of_best_pairs(run.table("best_pairs"), run.pairs())
 
 
-def _judged(turn: int, roles: list[str], config: RunConfig) -> Iterable[str]:
-    """Return the populations that are judged in a turn."""
+def _evaluated(turn: int, roles: list[str], config: RunConfig) -> Iterable[str]:
+    """Return the populations that are evaluated in a turn."""
     if turn == 0:
         return roles
     if turn > config.run.generations * len(roles):
@@ -183,8 +183,8 @@ def _judged(turn: int, roles: list[str], config: RunConfig) -> Iterable[str]:
 
 def _faults_of_best_pairs(
     best_pairs: Iterable[Mapping[str, Any]], pairs: Iterable[Mapping[str, Any]]
-) -> Iterator[str]:
-    """Yield the turns whose best pair is not the best of that turn, or no better than those before."""
+) -> Iterator[tuple[str, str]]:
+    """Yield a fault unless *best_pairs* are exactly the turns' best pairs that set a new record."""
     best: dict[int, float] = {}
     for pair in pairs:
         if pair["score"] is not None:
@@ -195,7 +195,7 @@ def _faults_of_best_pairs(
             record = score
             expected.append((turn, score))
     if [(row["turn"], row["score"]) for row in best_pairs] != expected:
-        yield "best_pairs: not the best of the pairs"
+        yield "best_pairs", "differs from the best of the table pairs"
 
 
 def _state(run: Run, config: RunConfig) -> str:
@@ -206,20 +206,20 @@ def _state(run: Run, config: RunConfig) -> str:
 
 def _champion(run: Run, config: RunConfig) -> str:
     if run.champion_document() is None:
-        return "there is none yet"
+        return "no pair has a score yet"
     champion, objective = run.champion(), config.objective.component
     [score] = score_designs(config.simulator.component, [champion.design], objective.record, objective)
     if score.value != champion.score:
         now = f"diverges at step {score.diverged_at}" if score.value is None else f"scores {score.value!r}"
-        raise InputError(f"scored {champion.score!r} in its run, but now {now}")
-    return f"scores {champion.score!r}, as in its run{_champion_file(run)}"
+        raise InputError(f"scored {champion.score!r} in the run, but now {now}")
+    return f"scores {champion.score!r}, as in the run{_champion_file(run)}"
 
 
 def _champion_file(run: Run) -> str:
-    """Return what there is to say of champion.json."""
+    """Return a remark on champion.json; empty if it is up to date."""
     if run.champion_is_written():
         return ""
-    todo = f"evoframe resume {run.directory} writes it again"
+    todo = f"to write it again: evoframe resume {run.directory}"
     if run.finished():
-        raise InputError(f"{run.directory / CHAMPION_FILE}: is not that of the database; {todo}")
-    return f"; {CHAMPION_FILE} is not up to date: {todo}"
+        raise InputError(f"differs from the database; {todo}", source=run.directory / CHAMPION_FILE)
+    return f"; {CHAMPION_FILE} is out of date; {todo}"

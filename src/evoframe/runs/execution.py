@@ -1,4 +1,4 @@
-"""Execution of a run: the loop plays, every turn is saved, observers are called."""
+"""Execution of a run: every turn of the loop is saved and reported to observers."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _log = logging.getLogger(__name__)
 
 @attrs.frozen
 class Execution:
-    """A run that is about to begin or to go on: its components have started, and its directory is its own.
+    """A run ready to start or resume: its components are started, and its directory is locked.
 
     Attributes:
-        config: What is run.
-        plugins: Those that may observe it.
-        directory: Where to.
+        config: The configuration.
+        plugins: The plugins, which can observe the run.
+        directory: The run's directory.
     """
 
     config: RunConfig
@@ -43,24 +43,24 @@ class Execution:
 
     @property
     def last_turn(self) -> int | None:
-        """Index of the last turn that is saved; ``None`` if there is none."""
+        """Index of the last saved turn; ``None`` if no turn is saved."""
         return None if self._store.last_turn < 0 else self._store.last_turn
 
     def play(self, stop: Callable[[], bool] = lambda: False) -> Run:
         """Run to the end, once.
 
         Args:
-            stop: Asked after every turn whether to stop there.
+            stop: Called after every turn; ``True`` stops the run there.
 
         Returns:
             The run, finished unless it was stopped.
 
         Raises:
-            RunError: The run cannot go on; what was saved stays.
+            RunError: The run cannot continue; saved turns are kept.
         """
         observers = Observers(self.plugins.manager)
         with contextlib.ExitStack() as stack:
-            stack.enter_context(self._naming_what_to_do())
+            stack.enter_context(self._add_hints())
             stack.callback(self._store.close)
             stack.enter_context(self._coevolution)
             observers.tell("evoframe_run_started", config=self.config, directory=self.directory)
@@ -72,39 +72,39 @@ class Execution:
             return Run(self.directory, dict(self._tables), tables=self._store.tables())
 
     def verify(self, run: Run) -> Verification | None:
-        """Verify the champion of the completed run: see :func:`verify_champion`."""
+        """Verify the champion of the finished run: see :func:`verify_champion`."""
         return verify_champion(self.config, run)
 
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
         for turn in self._coevolution:
             changed = [report.population for report in turn.reports]
             self._store.save(turn, self._coevolution.state(changed))
-            _note(turn)
+            _log_turn(turn)
             observers.tell("evoframe_turn_finished", turn=turn)
             if stop():
                 break
         if self._coevolution.finished:
-            self._store.finish(_result(self._coevolution))
+            self._store.finish(_final_figures(self._coevolution))
         else:
             self._store.update_champion()
 
     @contextlib.contextmanager
-    def _naming_what_to_do(self) -> Iterator[None]:
-        """Complete what an error says: whose fault it is, and how the run goes on."""
-        todo = f"to go on when that is mended: evoframe resume {self.directory}"
-        hint = f"what was saved before stays in {self.directory}; {todo}"
+    def _add_hints(self) -> Iterator[None]:
+        """Add to an error the component that caused it, and the command that resumes the run."""
+        todo = f"after fixing this, continue with: evoframe resume {self.directory}"
+        hint = f"saved turns are kept in {self.directory}; {todo}"
         try:
             yield
         except ComponentError as error:
-            complete = self._in_full(error)
+            complete = self._completed(error)
             complete.add_note(hint)
             raise complete from error
         except RunError as error:
             error.add_note(hint)
             raise
 
-    def _in_full(self, error: ComponentError) -> ComponentError:
-        """Return a component's error with all that is known of the component."""
+    def _completed(self, error: ComponentError) -> ComponentError:
+        """Return the error with the component's name and plugin, and the turn."""
         chosen = dict(self.config.components()).get(error.component)
         if chosen is None:
             return attrs.evolve(error)
@@ -114,14 +114,14 @@ class Execution:
 
 
 def verify_champion(config: RunConfig, run: Run) -> Verification | None:
-    """Verify the champion of a completed run, and keep the result beside it.
+    """Verify the champion of a finished run, and write the result to the run's directory.
 
     Returns:
         The verification; ``None`` if the simulator offers no variants.
 
     Raises:
-        LockedError: Another process writes to the directory.
-        RunError: It cannot be done. The run itself is complete and saved.
+        LockedError: Another process is writing to the directory.
+        RunError: The verification fails; the run itself is complete and saved.
     """
     if not isinstance(config.simulator.component, SupportsVariants):
         return None
@@ -131,21 +131,21 @@ def verify_champion(config: RunConfig, run: Run) -> Verification | None:
             [verification] = verify_designs(config, [champion.design], champion.score)
             keep_verification(run.directory, verification)
         except Exception as error:
-            complete = f"{run.directory}: the run is complete and saved"
-            raise RunError(f"{complete}, but its champion cannot be verified: {cause_of(error)}") from error
+            problem = f"the run is complete and saved, but its champion cannot be verified: {cause_of(error)}"
+            raise RunError(problem, source=run.directory) from error
     return verification
 
 
-def _note(turn: Turn) -> None:
+def _log_turn(turn: Turn) -> None:
     if turn.best_pair is not None:
-        _log.info("turn %d: a pair with the score %r", turn.index, turn.best_pair.score)
+        _log.info("turn %d: new best pair, score %r", turn.index, turn.best_pair.score)
     for report in turn.reports:
         best, mean = report.best, report.mean
-        _log.debug("turn %d: %s: best %r, mean %r", turn.index, report.population, best, mean)
+        _log.debug("turn %d: %s: best fitness %r, mean %r", turn.index, report.population, best, mean)
 
 
-def _result(coevolution: Coevolution) -> dict[str, Any]:
-    """Return the final figures: the fittest of each population, and the score of that pair."""
+def _final_figures(coevolution: Coevolution) -> dict[str, Any]:
+    """Return the final figures: best score, the fittest of each population, and the score of that pair."""
     pair = coevolution.fittest_pair()
     names = [population.name for population in coevolution.populations]
     members = [population.members[population.fittest()] for population in coevolution.populations]

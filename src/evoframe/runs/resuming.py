@@ -1,4 +1,4 @@
-"""Runs that go on where they were left, bit for bit as if nothing had happened."""
+"""Resuming of runs: the result equals that of an uninterrupted run bit for bit."""
 
 from __future__ import annotations
 
@@ -45,22 +45,22 @@ def resume(
     allow_different_versions: bool = False,
     plugins: Plugins | None = None,
 ) -> Run:
-    """Go on with a run from its last complete turn, as the command ``evoframe resume`` does.
+    """Resume a run after its last complete turn, like the command ``evoframe resume``.
 
     Args:
         directory: The run's directory.
         workers: Overrides ``executor.workers``; the result does not depend on it.
-        allow_different_versions: Go on although versions or the machine are not those that the run began
-            with, and note it in the table ``resumes``.
-        plugins: The plugins to choose from; by default those that are installed.
+        allow_different_versions: Resume even if versions or the machine changed since the start of the
+            run, and record the changes in the table ``resumes``.
+        plugins: The available plugins; by default all installed plugins.
 
     Returns:
-        The finished run; one that was finished already is verified, if it was not.
+        The finished run. A run that was already finished is only verified, if it was not.
 
     Raises:
-        ConfigurationError: The configuration, a version or the machine differs; says what.
-        InputError: It is no run's directory, it is damaged, or another process writes to it.
-        RunError: The run cannot go on; what was saved stays.
+        ConfigurationError: The configuration, a version or the machine differs; the text lists the changes.
+        InputError: It is not a run's directory, is damaged, or another process is writing to it.
+        RunError: The run cannot continue; saved turns are kept.
     """
     overrides, plugins = layers_of({"executor.workers": workers}), plugins or discover()
     with open_run(directory) as run:
@@ -75,7 +75,7 @@ def resume(
 
 
 def is_finished(run: Run) -> bool:
-    """Return whether a run has come to its end, with all its files.
+    """Return ``True`` if a run is finished and its champion's files are up to date.
 
     Raises:
         InputError: The run is damaged.
@@ -84,23 +84,23 @@ def is_finished(run: Run) -> bool:
 
 
 def is_verified(run: Run, config: RunConfig) -> bool:
-    """Return whether the champion of a finished run was verified, or cannot be: there are no variants.
+    """Return ``True`` if the champion of a finished run is verified, or its simulator has no variants.
 
     Raises:
-        InputError: The verification is damaged, or about another champion.
+        InputError: The verification is damaged, or verifies a different champion.
     """
     return not isinstance(config.simulator.component, SupportsVariants) or run.verification() is not None
 
 
 def verify_if_missing(run: Run, config: RunConfig) -> None:
-    """Verify the champion of a finished run, if nobody has: see :func:`verify_champion`.
+    """Verify the champion of a finished run unless it is verified: see :func:`verify_champion`.
 
     Args:
         run: The run.
         config: Its configuration, from :func:`configuration_of`.
 
     Raises:
-        InputError: The run or its verification is damaged, or another process writes to it.
+        InputError: The run or its verification is damaged, or another process is writing to it.
         RunError: The champion cannot be verified.
     """
     if not is_verified(run, config):
@@ -110,12 +110,12 @@ def verify_if_missing(run: Run, config: RunConfig) -> None:
 def reopen(
     run: Run, overrides: Sequence[str | Layer], plugins: Plugins, *, allow_different_versions: bool = False
 ) -> Execution:
-    """Return a run ready to go on after its last complete turn.
+    """Prepare a run to continue after its last complete turn.
 
     Args:
-        run: The run; it is open, and closed afterwards.
+        run: The open run, which is closed here.
         overrides: Settings of the executor.
-        plugins: The plugins to choose from, which may observe the run.
+        plugins: The available plugins, which can observe the run.
         allow_different_versions: As for :func:`resume`.
 
     Raises:
@@ -125,13 +125,13 @@ def reopen(
     lock = acquire_lock(run.directory)
     with released_on_error(lock):
         if not run.outdated():
-            return _reopened(run, lock, overrides, plugins, allowed=allow_different_versions)
+            return _reopen(run, lock, overrides, plugins, allowed=allow_different_versions)
         run.close()
-        with open_run(run.directory) as newer:  # another process was at it, a moment ago
-            return _reopened(newer, lock, overrides, plugins, allowed=allow_different_versions)
+        with open_run(run.directory) as newer:  # another process has just written to it
+            return _reopen(newer, lock, overrides, plugins, allowed=allow_different_versions)
 
 
-def _reopened(
+def _reopen(
     run: Run, lock: Lock, overrides: Sequence[str | Layer], plugins: Plugins, *, allowed: bool
 ) -> Execution:
     config = configuration_of(run, overrides, plugins)
@@ -142,10 +142,10 @@ def _reopened(
     try:
         if run.begun:
             restore(coevolution, run)
-        run.close()  # whoever reads keeps others from writing
+        run.close()  # a reader would block writing
         store = open_store(run.directory, config, lock)
         if run.begun:
-            _go_on(store, run, changes)
+            _resume(store, run, changes)
         else:  # killed before its first transaction
             store.begin(list(config.populations), config.deciding())
     except BaseException:
@@ -156,17 +156,17 @@ def _reopened(
 
 
 def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
-    """Return the configuration of a run, resolved.
+    """Return the resolved configuration of a run.
 
-    What decides the run must be as it was when it began, in the file as with the overrides.
+    Settings that determine the result must be unchanged since the start, with and without the overrides.
 
     Args:
         run: The run.
         overrides: Settings of the executor.
-        plugins: The plugins to choose from.
+        plugins: The available plugins.
 
     Raises:
-        ConfigurationError: It cannot be accepted, or is not that of the run; says what differs.
+        ConfigurationError: The configuration is invalid, or differs from that of the start; lists changes.
         InputError: The run is damaged.
     """
     path = run.directory / CONFIG_FILE
@@ -174,35 +174,35 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
     config = resolve_layers(layers.under(overrides), path.stem, plugins)
     began = run.configuration() if run.begun else resolve_layers(layers, path.stem, plugins).deciding()
     if others := differences(began, config.deciding()):
-        raise ConfigurationError(
-            _listed(f"{run.directory}: the configuration is not that of the run", others)
-        )
+        problem = "the configuration differs from that with which the run started"
+        raise ConfigurationError(_listed(problem, others), source=run.directory)
     return config
 
 
 def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
-    """Return what is not as when the run began, apart from its configuration.
+    """Return the changes of versions and machine since the start of the run.
 
     Raises:
-        ConfigurationError: There is something, and that is not allowed.
+        ConfigurationError: There are changes, and they are not allowed.
     """
     changes = differences(run.config.get("provenance", {}), provenance_of(config))
     if changes and not allowed:
-        message = f"{run.directory}: not what the run was begun with, so its result may differ"
-        todo = "to go on all the same, which is noted: --allow-different-versions"
-        raise ConfigurationError(f"{_listed(message, changes)}\n  {todo}")
+        problem = "versions or machine differ from those with which the run started, so its result may differ"
+        command = f"evoframe resume {run.directory} --allow-different-versions"
+        todo = f"to continue anyway (this is recorded): {command}"
+        raise ConfigurationError(f"{_listed(problem, changes)}\n  {todo}", source=run.directory)
     return changes
 
 
-def _listed(message: str, lines: Sequence[str]) -> str:
-    return "\n  ".join([f"{message}:", *lines])
+def _listed(problem: str, lines: Sequence[str]) -> str:
+    return "\n  ".join([f"{problem}:", *lines])
 
 
 def restore(coevolution: Coevolution, saved: Run) -> None:
-    """Bring the loop to the end of the last turn.
+    """Restore the loop to the end of the last turn.
 
     Raises:
-        InputError: The state is missing, or no state.
+        InputError: The state is missing or invalid.
     """
     state, last = saved.state(), saved.last_turn()
     if last is None and not state:
@@ -211,22 +211,21 @@ def restore(coevolution: Coevolution, saved: Run) -> None:
         coevolution.restore(state)
     except Exception as error:
         cause = f"missing {error}" if isinstance(error, KeyError) else str(error)
-        raise InputError(f"{saved.directory}: the state cannot be restored: {cause}") from error
+        raise InputError(f"cannot be restored: {cause}", source=saved.directory, key="state") from error
     if coevolution.turn != last:
-        raise InputError(
-            f"{saved.directory}: the state is that after turn {coevolution.turn}, the last one is {last}"
-        )
+        problem = f"expected the state after turn {last}, found that after turn {coevolution.turn}"
+        raise InputError(problem, source=saved.directory, key="state")
 
 
-def _go_on(store: Store, saved: Run, changes: Sequence[str]) -> None:
-    """Complete or remove what a kill has left half done, and note the resume.
+def _resume(store: Store, saved: Run, changes: Sequence[str]) -> None:
+    """Complete or remove files that a kill left incomplete, and record the resume.
 
-    A run that is finished may lack a file; or another process has finished it a moment ago.
+    The run can already be finished: a file was missing, or another process has just finished it.
     """
     for path in saved.directory.iterdir():
         if is_leftover(path):
             remove(path)
-    store.go_on({table: saved.rows(table) for table in (*CHAINED, *SINGLE)}, changes)
+    store.resume({table: saved.rows(table) for table in (*CHAINED, *SINGLE)}, changes)
     document = saved.champion_document()
     if document is not None and not saved.champion_is_written():
         champion: Mapping[str, Any] = parsed_json(document)

@@ -1,4 +1,4 @@
-"""Start of a run: its components, and its directory."""
+"""Start of a run: its components and its directory."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def run(
     plugins: Plugins | None = None,
     **settings: Any,
 ) -> Run:
-    """Run a configuration to its end and verify its champion, as the command ``evoframe run`` does.
+    """Run a configuration to the end and verify its champion, like the command ``evoframe run``.
 
     Args:
         config: Name of a preset, path of a TOML file, or a configuration from :func:`load_config`.
         seed: Overrides ``run.seed``.
         out: The run's directory; by default ``runs/<label>-<seed>``, with a counter if that exists.
         workers: Overrides ``executor.workers``.
-        plugins: The plugins to choose from, which may observe the run; by default those that are installed.
+        plugins: The available plugins, which can observe the run; by default all installed plugins.
         **settings: Further settings by key: ``aggregator="hm"``, ``collaboration={"n": 5}``, or dotted,
             ``**{"collaboration.n": 5}``.
 
@@ -49,16 +49,16 @@ def run(
         The finished run.
 
     Raises:
-        ConfigurationError: The configuration cannot be accepted; nothing was run or written.
+        ConfigurationError: The configuration is invalid; nothing was run or written.
         InputError: The directory is not empty, or cannot be written.
-        RunError: The run cannot go on, or its champion cannot be verified; what was saved stays.
+        RunError: The run cannot continue, or its champion cannot be verified; saved turns are kept.
     """
     plugins = plugins or discover()
     if not isinstance(config, RunConfig):
         overrides = layers_of({**settings, "run.seed": seed, "executor.workers": workers})
         config = load_config(config, overrides=overrides, plugins=plugins)
     elif settings or seed is not None or workers is not None:
-        raise TypeError("a configuration is complete; give settings to load_config")
+        raise TypeError("a RunConfig is complete; pass settings to load_config instead")
     execution = prepare(config, plugins, None if out is None else Path(out))
     finished = execution.play()
     execution.verify(finished)
@@ -66,18 +66,18 @@ def run(
 
 
 def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Execution:
-    """Start the components of a configuration, and make the directory of its run.
+    """Start the components of a configuration, and create the directory of its run.
 
     Args:
-        config: What to run.
-        plugins: Those that may observe it, apart from those that the configuration blocks.
+        config: The configuration to run.
+        plugins: The plugins, which can observe the run unless the configuration blocks them.
         out: The run's directory, missing or empty; by default ``runs/<label>-<seed>``, with a counter if
             that exists.
 
     Raises:
-        ConfigurationError: A component refuses to start; there is no directory then.
-        OccupiedError: The directory holds a run, perhaps one that another process has just begun.
-        InputError: It is not empty, or cannot be made.
+        ConfigurationError: A component cannot start; no directory was created.
+        OccupiedError: The directory contains a run, possibly one just started by another process.
+        InputError: The directory is not empty, or cannot be created.
     """
     usable = plugins.without(config.plugins.block)
     coevolution = assemble(config)
@@ -95,7 +95,7 @@ def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Exe
 def _new_store(directory: Path, config: RunConfig, tables: Mapping[str, Any]) -> Store:
     lock = acquire_lock(directory)
     with released_on_error(lock):
-        _refuse_occupied(directory)  # again: another process may have been faster
+        _refuse_occupied(directory)  # again, because another process may have been faster
         write_atomically(directory / CONFIG_FILE, tomli_w.dumps(tables).encode())
         store = open_store(directory, config, lock)
         store.begin(list(config.populations), config.deciding())
@@ -103,17 +103,17 @@ def _new_store(directory: Path, config: RunConfig, tables: Mapping[str, Any]) ->
 
 
 def open_store(directory: Path, config: RunConfig, lock: Lock) -> Store:
-    """Return the store of a run's directory, whose database is new or has what was saved so far.
+    """Open the store of a run's directory; its database is created, or keeps its saved turns.
 
     Raises:
-        InputError: It cannot be written.
+        InputError: The database cannot be written.
     """
     export = functools.partial(export_all, config.simulator.component)
     return Store.open(directory, config.simulation(), lock, export)
 
 
 def _default_directory(config: RunConfig) -> Path:
-    """Make a directory that was not there before, so that runs which start together do not meet in one."""
+    """Create a new directory, so that runs started at the same time get different ones."""
     base = Path("runs") / f"{config.label}-{config.run.seed}"
     counted = (base.with_name(f"{base.name}-{number}") for number in itertools.count(2))
     for directory in itertools.chain([base], counted):
@@ -122,16 +122,16 @@ def _default_directory(config: RunConfig) -> Path:
         except FileExistsError:
             continue
         except OSError as error:
-            raise InputError(f"{directory}: cannot be made: {error.strerror}") from error
+            raise InputError(f"cannot be created: {error.strerror}", source=directory) from error
         return directory
-    raise AssertionError  # the counter has no end
+    raise AssertionError  # the counter is infinite
 
 
 def _given_directory(directory: Path) -> Path:
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+        raise InputError(f"cannot be used for a run: {error.strerror}", source=directory) from error
     _refuse_occupied(directory)
     return directory
 
@@ -140,14 +140,14 @@ def _refuse_occupied(directory: Path) -> None:
     try:
         names = {path.name for path in directory.iterdir() if not is_leftover(path)} - {LOCK_FILE}
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a run: {error.strerror}") from error
+        raise InputError(f"cannot be used for a run: {error.strerror}", source=directory) from error
     if CONFIG_FILE in names:
         with open_run(directory) as there:
             finished = there.begun and there.finished()
-        what = "holds a finished run" if finished else "holds a run that is not finished"
-        todo = "" if finished else f"; to go on with it: evoframe resume {directory}"
+        what = "a finished run" if finished else "an unfinished run"
+        todo = "" if finished else f", or resume the run: evoframe resume {directory}"
         raise OccupiedError(
-            f"{directory}: is not empty: it {what}; choose another directory with --out{todo}"
+            f"directory contains {what}; choose another directory with --out{todo}", source=directory
         )
     if names:
-        raise NotEmptyError(f"{directory}: is not empty; choose another directory with --out")
+        raise NotEmptyError("directory is not empty; choose another with --out", source=directory)

@@ -1,10 +1,10 @@
-"""Packs the traces of the original engine, as its build writes them, into the files of this folder.
+"""Convert traces written by a build of the original engine to the files of this folder.
 
     python tests/data/environment/convert.py FOLDER
 
 FOLDER has one folder for each case, with ``case.json`` (what was simulated, engine-neutral), ``trace.csv``
 (the mean of the voxels with the largest initial x, and that of the whole body) and ``final_positions.csv``.
-Every sampled row and every voxel is kept, in double precision; README.md here says what is where.
+Every sampled row and every voxel is kept, in double precision; README.md describes the files.
 """
 
 import csv
@@ -21,7 +21,7 @@ FIX_ALL = 63  # all six degrees of freedom
 
 
 def settings(case: dict[str, Any]) -> dict[str, Any]:
-    """Return the case's settings under the names that the solver has for them."""
+    """Return the settings of a case under the solver's names."""
     gravity, actuation, damping = case["gravity"], case["actuation"], case["damping"]
     return {
         "voxel_size": case["lattice_dim"],
@@ -52,7 +52,7 @@ def substance(material: dict[str, Any]) -> dict[str, float]:
 
 
 def described(case: dict[str, Any]) -> dict[str, Any]:
-    """Return what is no array: the case in words and numbers, and what the engine said of it."""
+    """Return all data of a case except arrays: its description and settings, and the engine's own figures."""
     return {
         "description": case["description"],
         "settings": settings(case),
@@ -64,7 +64,7 @@ def described(case: dict[str, Any]) -> dict[str, Any]:
 
 
 def over_cells(flat: list[float] | None, canvas: tuple[int, int, int]) -> NDArray[np.float64]:
-    """Return a flat list with x fastest as ``[X, Y, Z]``; zeros if there is none."""
+    """Return a flat list with x fastest as an array ``[X, Y, Z]``; zeros for ``None``."""
     if flat is None:
         return np.zeros(canvas)
     return np.array(flat, np.float64).reshape(canvas[::-1]).transpose(2, 1, 0)
