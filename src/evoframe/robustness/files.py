@@ -147,8 +147,8 @@ def read_robustness(directory: str | Path) -> Robustness:
 def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
     """Return the setting as tables in which each body has its own key.
 
-    Bodies are compared by digest and group, so a run that was moved still counts as the same body. Labels are
-    used as keys if *labelled*, that is if they are equal in both settings; otherwise numbers are.
+    Bodies are compared by digest and group, so a run that was moved still counts as the same body. The keys
+    are labels if *labelled* (if both settings have the same labels), and numbers if not.
     """
     groups = list(setting.groups)
     bodies = {

@@ -76,7 +76,7 @@ def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> d
     Args:
         study: The study.
         directory: Its directory.
-        more: Further tables, read as if they were imported.
+        more: Further tables to read without importing them.
 
     Raises:
         InputError: A table is damaged, or a row has another configuration or seed than this study.

@@ -45,12 +45,12 @@ class Status:
 
     @property
     def is_done(self) -> bool:
-        """Whether the run has a row."""
+        """True if the run has a row."""
         return self.state in ("finished", "imported")
 
     @property
     def is_complete(self) -> bool:
-        """Whether the run is done and verified."""
+        """True if the run is done and verified."""
         return self.is_done and self.verified
 
 
