@@ -1,10 +1,10 @@
-# What a person types. Each target sets up what it needs; nothing has to be activated.
+# Commands for users and developers. Each target sets up its environment; no environment has to be activated.
 
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
-C := $(filter-out $(wildcard lib*/evoframe_*/*.c),$(wildcard lib*/*.[ch] lib*/*/*.[ch])) # but for cffi's
+C := $(filter-out $(wildcard lib*/evoframe_*/*.c),$(wildcard lib*/*.[ch] lib*/*/*.[ch])) # without files of cffi
 SOURCES := pyproject.toml setup.py extensions.py $(C) $(wildcard lib*/*/*.py)
 PARALLEL := --numprocesses auto --dist worksteal
 
@@ -13,55 +13,55 @@ LONG   := interpreters
 
 .PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters clean
 
-## run: the published experiment
+## run: run the published experiment (preset paper)
 run: $(VENV)/installed
 	$(BIN)/evoframe run
 
-## test: everything that CI checks
+## test: run all checks of CI
 test: lint types imports unit lowest browser sanitize fuzz
 	@echo "not run: make long ($(LONG))"
 
-## long: evidence that takes too long for every change
+## long: run the checks that take too long for every change
 long: $(LONG)
 
-## lint: style of the Python and the C code
+## lint: check the style of the Python and C code
 lint: $(VENV)/developing
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/clang-format --dry-run --Werror $(C)
 
-## types: mypy --strict
+## types: check types with mypy --strict
 types: $(VENV)/developing
 	$(BIN)/mypy
 
-## imports: who may import whom
+## imports: check which packages import each other
 imports: $(VENV)/developing
 	$(BIN)/lint-imports
 
-## unit: the tests, on all cores, with the coverage of the code
+## unit: run the tests on all cores, and measure their coverage
 unit: $(VENV)/developing
 	$(BIN)/coverage erase
 	$(BIN)/coverage run -m pytest $(PARALLEL)
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 
-## lowest: the tests, with the lowest version of each dependency that pyproject.toml allows
+## lowest: run the tests with the lowest version of each dependency that pyproject.toml allows
 lowest: $(LOWEST)/developing
-	$(LOWEST)/bin/python -m pytest -W ignore::DeprecationWarning $(PARALLEL) # old releases use what newer ones deprecate
+	$(LOWEST)/bin/python -m pytest -W ignore::DeprecationWarning $(PARALLEL) # old releases use deprecated functions
 
-## browser: the pages of reports, in Chromium
+## browser: test the pages of reports in Chromium
 browser: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/browser/browser.sh
 
-## sanitize: the C libraries and their tests under the address and undefined-behaviour sanitizers
+## sanitize: test the C libraries with the address and undefined-behavior sanitizers
 sanitize: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/sanitize.sh
 
-## interpreters: the tests, with each other Python that is installed
+## interpreters: run the tests with each other installed version of Python
 interpreters: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
 
-## fuzz: SECONDS of inputs that nobody would write, for libvox, the reader of VXA files and that of configurations
+## fuzz: fuzz libvox and the readers of VXA files and configurations for SECONDS
 fuzz: $(VENV)/fuzzing
 	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
 
@@ -72,7 +72,7 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/installed: $(BIN)/python $(SOURCES)
-	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' # the first to know dependency groups
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' # the first with dependency groups
 	$(BIN)/python -m pip install --quiet --editable .
 	touch $@
 
@@ -80,7 +80,7 @@ $(VENV)/developing: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --group dev
 	touch $@
 
-# Without isolation, so that the C libraries are built with the lowest versions too.
+# No build isolation, so that the C libraries are also built with the lowest versions.
 $(LOWEST)/developing: $(VENV)/developing
 	$(BIN)/uv venv --quiet --clear --python $(BIN)/python $(LOWEST)
 	$(BIN)/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct \

@@ -1,4 +1,4 @@
-"""Only what the C extensions need; everything else stands in pyproject.toml."""
+"""Settings of the C extensions; all other settings are in pyproject.toml."""
 
 from setuptools import setup
 

@@ -1,1 +1,1 @@
-"""Measurements: what they compare, on what, and the numbers; nothing here is a test."""
+"""Benchmarks: measurements of run times and results, not tests."""

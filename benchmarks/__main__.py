@@ -1,4 +1,4 @@
-"""How fast is evoframe, and where does its time go? All that is compared is measured in one run, in turns."""
+"""Measure the speed of evoframe and the time of its parts; compared actions are interleaved in one run."""
 
 from __future__ import annotations
 
@@ -34,17 +34,19 @@ SECTIONS: dict[str, Callable[[Effort], Section]] = {
     "startup": startup,
     "roofline": roofline,
 }
-_WIDTH = 132  # where nobody knows how wide the output is
+_WIDTH = 132  # of output that is not a terminal
 
 
 @click.command(help=__doc__)
-@click.option("--quick", is_flag=True, help="Only see whether it works; the figures say little.")
-@click.option("--only", multiple=True, type=click.Choice(list(SECTIONS)), help="A section; may be repeated.")
+@click.option("--quick", is_flag=True, help="Only check that everything works; the figures are not reliable.")
 @click.option(
-    "--json", "file", type=click.Path(path_type=Path, dir_okay=False), help="Write the figures too."
+    "--only", multiple=True, type=click.Choice(list(SECTIONS)), help="Measure only this section. Repeatable."
+)
+@click.option(
+    "--json", "file", type=click.Path(path_type=Path, dir_okay=False), help="Also write the figures as JSON."
 )
 def main(*, quick: bool, only: tuple[str, ...], file: Path | None) -> None:
-    """Measure, print, and fail if a section did."""
+    """Measure and print all sections; exit with 1 if one failed."""
     console = Console(width=None if sys.stdout.isatty() else _WIDTH)
     about = machine()
     _introduce(console, about)
@@ -70,7 +72,7 @@ def _introduce(console: Console, about: dict[str, str]) -> None:
     for name, value in about.items():
         console.print(f"{name + ':':<20}{value}", highlight=False, markup=False, soft_wrap=True)
     if load() > BUSY:
-        console.print("The machine is busy: what else it does may disturb the figures.", style="bold yellow")
+        console.print("The machine is busy: other processes may disturb the figures.", style="bold yellow")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""Does the bar of the preset ``bending`` really bend, and where does its drive lie?
+"""Bending of the bar of the preset ``bending``, and the ratio of its drive to its first bending mode.
 
-Measures the first bending mode of the bar (solid, and only its enclosure) from its swing under a small
-sudden weight, and how far a bimorph of the preset bends: its upper half contracts against its lower. Then the
-same with other drive frequencies and dampings, which is what those of the preset were chosen by.
+Measures the first bending mode of the bar (solid, and its enclosure only) from its swing under a small sudden
+weight, and the displacement of a bimorph of the preset, whose upper half contracts while its lower half
+expands. Then it measures the displacement for other drive frequencies and dampings; those of the preset were
+chosen from these figures.
 
     python -m benchmarks.bending
 """
@@ -35,14 +36,14 @@ def bar(canvas: Sequence[int], inside: int) -> NDArray[np.uint8]:
 
 
 def bimorph(canvas: Sequence[int]) -> Design:
-    """Return a bar whose upper half contracts when its lower half expands."""
+    """Return a bar whose upper half contracts while its lower half expands."""
     offsets = np.zeros(canvas)
     offsets[:, :, : canvas[2] // 2] = math.pi
     return Design({MORPHOLOGY: bar(canvas, CONTRACTILE), CONTROLLER: offsets})
 
 
 def first_mode(vox: Any, body: NDArray[np.uint8]) -> float:
-    """Return the frequency, Hz, at which a bar swings about where a small weight would hold it."""
+    """Return the frequency, Hz, at which a bar swings around its equilibrium under a small weight."""
     wave_speed = math.sqrt(vox.youngs_modulus / vox.density)
     slender = 0.1615 * body.shape[2] / (body.shape[0] - 0.5) ** 2 * wave_speed / vox.voxel_size
     swinging = attrs.evolve(
@@ -70,14 +71,14 @@ def bending(vox: Any, objective: Any, design: Design) -> tuple[float, float]:
 
 
 def driven_at(vox: Any, objective: Any, frequency: float) -> tuple[Any, Any]:
-    """Return simulator and objective for another drive, with as many periods of it."""
+    """Return simulator and objective for another drive frequency, with the same number of periods."""
     slower = vox.frequency / frequency
     simulator = attrs.evolve(vox, frequency=frequency, ramp=vox.ramp * slower, duration=vox.duration * slower)
     return simulator, attrs.evolve(objective, every=objective.every * slower, after=objective.after * slower)
 
 
-def say(line: str) -> None:
-    """Write a line at once: the next measurement may take a while."""
+def write_line(line: str) -> None:
+    """Write a line without buffering, since the next measurement may take a while."""
     sys.stdout.write(f"{line}\n")
     sys.stdout.flush()
 
@@ -90,20 +91,22 @@ def main() -> None:
     canvas = config.populations[MORPHOLOGY].encoder.component.canvas  # type: ignore[attr-defined]  # of cppn-morphology
     for name, inside in (("solid", PASSIVE), ("enclosure only", 0)):
         mode = first_mode(vox, bar(canvas, inside))
-        say(f"first bending mode, {name}: {mode:.2f} Hz; the drive is at {vox.frequency / mode:.2f} of it")
+        write_line(
+            f"first bending mode, {name}: {mode:.2f} Hz; the drive is at {vox.frequency / mode:.2f} of it"
+        )
     displacement, cpu = bending(vox, objective, bimorph(canvas))
-    say(f"bimorph: {displacement:.3f} voxel edges; {cpu:.2f} s of CPU")
+    write_line(f"bimorph: {displacement:.3f} voxel edges; {cpu:.2f} s of CPU")
     workers = config.executor.component.start()
     for finding in verify_design(vox, objective, bimorph(canvas), workers).findings:
         least, greatest = (value / vox.voxel_size for value in (finding.values[0], finding.values[-1]))
-        say(f"  {finding.name}: {least:.7f} to {greatest:.7f} in {len(finding.values)}")
+        write_line(f"  {finding.name}: {least:.7f} to {greatest:.7f} in {len(finding.values)}")
     workers.close()
     for frequency in FREQUENCIES:
         displacement, _ = bending(*driven_at(vox, objective, frequency), bimorph(canvas))
-        say(f"drive {frequency:g} Hz: {displacement:.3f} voxel edges")
+        write_line(f"drive {frequency:g} Hz: {displacement:.3f} voxel edges")
     for damping in DAMPINGS:
         displacement, _ = bending(attrs.evolve(vox, slow_damping=damping), objective, bimorph(canvas))
-        say(f"slow damping {damping:g}: {displacement:.3f} voxel edges")
+        write_line(f"slow damping {damping:g}: {displacement:.3f} voxel edges")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""The form of the source: modules in each folder, the longest chain of imports, circles, functions.
+"""Structure of the source: modules in each folder, the longest chain of imports, circular imports, functions.
 
-``python -m benchmarks.house [CHECKOUT]``, by default this one; nothing of it is imported or run.
+``python -m benchmarks.house [CHECKOUT]``, by default this one; nothing in it is imported or executed.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ _Graph = Mapping[str, frozenset[str]]
 
 @attrs.frozen
 class Form:
-    """What can be counted of a source tree without running it.
+    """Figures of a source tree from its syntax.
 
     Attributes:
         folders: Folder -> number of its modules.
-        lines: Lines of all modules.
-        code: Lines without imports, ``__all__``, docstrings, comments and blank lines.
-        chain: Modules on the longest chain of imports; a circle counts as one.
+        lines: Number of lines of all modules.
+        code: Number of lines without imports, ``__all__``, docstrings, comments and blank lines.
+        chain: Number of modules on the longest chain of imports; a circle counts as one.
         circles: Sets of modules that import each other.
         functions: Lengths of all functions, in lines.
         private: Number of functions whose names begin with an underscore.
-        used_once: How many of them are named once in their module.
+        used_once: Number of private functions named only once in their module.
     """
 
     folders: Mapping[str, int]
@@ -47,7 +47,7 @@ class Form:
 
 
 def form_of(root: Path) -> Form:
-    """Return the form of the Python packages of a checkout: core, plugins and bindings."""
+    """Return the figures of the Python packages of a checkout: core, plugins and bindings."""
     modules = dict(_modules(root))
     graph = {name: frozenset(_imported(tree, modules)) - {name} for name, (_, tree) in modules.items()}
     reached = {name: _reached(graph, name) for name in graph}
@@ -88,7 +88,7 @@ def _modules(root: Path) -> Iterator[tuple[str, tuple[Path, ast.Module]]]:
 
 
 def _imported(tree: ast.Module, modules: _Modules) -> Iterator[str]:
-    """Yield the modules that a module imports, wherever in it that stands."""
+    """Yield the modules that a module imports, also within its functions."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in modules)
@@ -114,7 +114,7 @@ def _named(tree: ast.Module) -> Counter[str]:
 
 
 def _code(lines: list[str], tree: ast.Module) -> int:
-    """Return the number of lines that do something."""
+    """Return the number of lines without imports, ``__all__``, docstrings, comments and blank lines."""
     idle = set()
     for node in ast.walk(tree):
         text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
@@ -126,7 +126,7 @@ def _code(lines: list[str], tree: ast.Module) -> int:
 
 
 def main() -> None:
-    """Print the form of a checkout."""
+    """Print the figures of a checkout."""
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parents[1]
     form = form_of(root)
     for folder, count in sorted(form.folders.items()):

@@ -1,4 +1,4 @@
-"""What the figures were measured on, and with."""
+"""Description of the machine and the software of a benchmark."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from evoframe_libvox import KERNELS
 __all__ = ["BUSY", "compiler", "cores", "load", "machine"]
 
 BUSY = 0.3
-"""Load from which other work may disturb the figures."""
+"""Load above which other processes may disturb the figures."""
 
 _BUILD = Path(__file__).parent.parent / "extensions.py"
 
 
 def machine() -> dict[str, str]:
-    """Return what decides about times."""
+    """Return the properties of the machine and the software that affect times."""
     return {
         "processor": f"{_processor()}, {cores()} cores usable",
         "kernels": ", ".join(KERNELS),
-        "compiler": f"{_first_line([*compiler(), '--version'])} (here and now)",
+        "compiler": f"{_first_line([*compiler(), '--version'])} (of this environment)",
         "flags of libvox": " ".join(runpy.run_path(str(_BUILD))["FLAGS"]),
         "system": f"{platform.system()} {platform.release()}, {' '.join(platform.libc_ver())}",
         "python": platform.python_version(),
@@ -36,12 +36,12 @@ def machine() -> dict[str, str]:
 
 
 def compiler() -> list[str]:
-    """Return the command of the C compiler that builds extensions, as setuptools finds it."""
+    """Return the command of the C compiler that builds extensions, found as setuptools does."""
     return shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")
 
 
 def load() -> float:
-    """Return how many processes have wanted to work in the last minute; 0 where nobody knows."""
+    """Return the load average of the last minute; 0 if the system does not provide it."""
     return os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
 
 
@@ -59,7 +59,7 @@ def _processor() -> str:
 
 def _first_line(command: list[str]) -> str:
     try:
-        said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     except (OSError, subprocess.CalledProcessError):
-        return f"none that answers to '{command[0]}'"
-    return said.partition("\n")[0]
+        return f"none: '{command[0]}' cannot be executed"
+    return printed.partition("\n")[0]

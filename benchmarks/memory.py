@@ -1,4 +1,4 @@
-"""How much memory does a program need at most?"""
+"""Peak memory of a program."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 
 __all__ = ["peak_memory"]
 
-# A process counts the memory of the one that it was made from as its own, so that is a small one.
+# A process inherits the peak memory of its parent, so the parent is a small launcher.
 _LAUNCHER = """
 import json, resource, subprocess, sys, time
 began = time.perf_counter()
@@ -20,15 +20,15 @@ _UNIT = 1 if sys.platform == "darwin" else 1024  # of ru_maxrss, bytes
 
 
 def peak_memory(command: list[str]) -> tuple[float, float]:
-    """Run a command in a process of its own.
+    """Run a command in its own process.
 
     Returns:
-        Its greatest resident size in MB, and how long it took, s.
+        Its peak resident size, MB, and its duration, s.
 
     Raises:
-        CalledProcessError: It failed.
+        CalledProcessError: The command failed.
     """
     launched = [sys.executable, "-c", _LAUNCHER, *command]
-    said = subprocess.run(launched, check=True, stdout=subprocess.PIPE, text=True).stdout
-    size, seconds = json.loads(said)
+    printed = subprocess.run(launched, check=True, stdout=subprocess.PIPE, text=True).stdout
+    size, seconds = json.loads(printed)
     return size * _UNIT / 1e6, seconds

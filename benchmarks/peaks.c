@@ -1,5 +1,5 @@
-/* What a core can do at most with the vectors that the compiler was told of: multiplications with additions, divisions,
- * square roots, and the traffic between core and memory. */
+/* Peak of a core with the compiler's vector instructions: multiplications with additions, divisions, square roots,
+ * and the traffic between core and memory. */
 #include <math.h>
 #include <stdint.h>
 
@@ -15,13 +15,13 @@ typedef double vector __attribute__((vector_size(VECTOR_BYTES)));
 
 enum { LANES = VECTOR_BYTES / 8, CHAINS = 12, HELD = 512 };
 
-/* Operations of chains_run in a round. */
+/* Number of operations of chains_run in a round. */
 int64_t chains_operations(void)
 {
     return 2 * CHAINS * LANES;
 }
 
-/* Chains of a multiplication and an addition, none of which waits for another: enough for the latency of both. */
+/* Independent chains of a multiplication and an addition, enough to hide the latency of both. */
 double chains_run(int64_t rounds, double factor, double term)
 {
     vector chain[CHAINS], a, b, sum;
@@ -39,7 +39,7 @@ double chains_run(int64_t rounds, double factor, double term)
     return sum[0];
 }
 
-/* Numbers that the next two work on in a round. */
+/* Number of values that the next two functions process in a round. */
 int64_t held_numbers(void)
 {
     return HELD;
@@ -63,12 +63,12 @@ double roots_run(int64_t rounds, double term)
     return x[HELD / 2];
 }
 
-/* Two arrays are read and one is written, again and again. */
+/* Reads two arrays and writes one in each round. */
 void triad_run(int64_t rounds, int64_t n, double factor, double *restrict to, const double *restrict a,
                const double *restrict b)
 {
     for (int64_t round = 0; round < rounds; round++) {
         for (int64_t i = 0; i < n; i++) to[i] = a[i] + factor * b[i];
-        __asm__ volatile("" ::: "memory"); /* every round is made */
+        __asm__ volatile("" ::: "memory"); /* so that the compiler removes no round */
     }
 }

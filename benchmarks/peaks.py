@@ -1,4 +1,4 @@
-"""The measured peak of a core, by a small C program that the compiler of the solver makes here and now."""
+"""Measurement of a core's peak, by a small C extension built with the compiler of the solver."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ INSTRUCTIONS = {
     "avx2": ("-mavx2",),
     "avx512": ("-mavx512f", "-mavx512dq", "-mavx512vl", "-mavx512bw", "-mprefer-vector-width=512"),
 }
-"""What the compiler is told for each kernel of vectors; as in ``libvox/kernels/kernel_*.c``."""
+"""Flags of the compiler for each vector kernel, as in ``libvox/kernels/kernel_*.c``."""
 
 _SOURCE = Path(__file__).with_name("peaks.c")
 _FLAGS = ("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
@@ -35,16 +35,16 @@ double divisions_run(int64_t rounds, double dividend);
 double roots_run(int64_t rounds, double term);
 void triad_run(int64_t rounds, int64_t n, double factor, double *to, const double *a, const double *b);
 """
-_TRIES = 5  # of which the best counts: a peak is what can be reached
+_TRIES = 5  # the best of them is the peak
 
 
 @attrs.frozen
 class Peak:
-    """The most that a core does in a second.
+    """Peak rates of a core, per second.
 
     Attributes:
-        operations: Multiplications and additions, as many of the one as of the other.
-        divisions: Of doubles.
+        operations: Multiplications and additions of doubles, half of each.
+        divisions: Divisions of doubles.
         roots: Square roots of doubles, each with an addition.
     """
 
@@ -58,10 +58,10 @@ def peak(kernel: str, seconds: float) -> Peak:
 
     Args:
         kernel: One of ``INSTRUCTIONS``.
-        seconds: How long each try takes, about.
+        seconds: Approximate duration of each try, s.
 
     Raises:
-        SectionError: There is no compiler.
+        SectionError: The compiler is missing or fails.
     """
     lib, _ = _compiled(kernel)
     return Peak(
@@ -72,10 +72,10 @@ def peak(kernel: str, seconds: float) -> Peak:
 
 
 def bandwidth(kernel: str, size: int, seconds: float) -> float:
-    """Measure how many bytes a core reads and writes in a second, two to one, in so many bytes of memory.
+    """Measure the bytes per second that a core reads and writes, two to one, in *size* bytes of memory.
 
     Raises:
-        SectionError: There is no compiler.
+        SectionError: The compiler is missing or fails.
     """
     lib, ffi = _compiled(kernel)
     n = size // 24
@@ -84,7 +84,7 @@ def bandwidth(kernel: str, size: int, seconds: float) -> float:
 
 
 def _rate(run: Callable[[int], object], seconds: float) -> float:
-    """Return the rounds in a second of CPU time, at best."""
+    """Return the best rate of rounds per second of CPU time."""
     rounds = 1
     while (taken := _time(run, rounds)) < seconds:
         rounds = 2 * rounds if taken < seconds / 100 else int(1.1 * rounds * seconds / taken) + 1
@@ -119,14 +119,14 @@ def _compile(kernel: str) -> Any:
         except VerificationError as error:
             command = " ".join(compiler())
             raise SectionError(
-                f"the machine's peak cannot be measured: '{command}' does not compile {_SOURCE.name}: {error}"
+                f"cannot measure the peak of a core: '{command}' does not compile {_SOURCE.name}: {error}"
             ) from error
 
 
 def _imported(name: str, path: Path) -> Any:
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
-        raise SectionError(f"{path} is no extension module")
+        raise SectionError(f"{path} is not an extension module")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -1,8 +1,8 @@
-"""Does evolution get beyond a bar in which every interior voxel contracts?
+"""Comparison of evolved bodies with random search and with the all-contractile bar.
 
-Compares the best pair of many seeds of the presets ``paper`` and ``authors-rates`` with random search (the
-same loop with the evolver ``random``) and with the all-contractile body at its best common phase offset
-(paper.md, "Expect a plateau").
+The best pairs of many seeds of the presets ``paper`` and ``authors-rates`` are compared with random search
+(the same loop with the evolver ``random``) and with the bar whose interior voxels all contract, at its best
+common phase offset (docs/experiment.md, "Expect a plateau").
 
     python -m benchmarks.plateau --seeds 10 --out DIR
 """
@@ -36,7 +36,7 @@ THRESHOLD = 0.006  # m
 
 
 def run_one(name: str, seed: int, out: Path) -> Path:
-    """Run a configuration in a process of its own, unless that was done before."""
+    """Run a configuration in its own process, unless it is finished."""
     preset, settings = CONFIGURATIONS[name]
     directory = out / f"{name.replace(' ', '-').replace(',', '')}-{seed}"
     if not directory.exists():
@@ -52,7 +52,7 @@ def run_one(name: str, seed: int, out: Path) -> Path:
 
 
 def best_within(finished: evoframe.Run, simulations: float) -> float:
-    """Return the displacement of the best pair among the first so many simulations."""
+    """Return the score of the best pair among the first *simulations* simulations, m."""
     spent, turn = 0, 0
     for row in finished.workload():
         spent += row["simulations"]
@@ -64,7 +64,7 @@ def best_within(finished: evoframe.Run, simulations: float) -> float:
 
 
 def all_contractile() -> tuple[float, float]:
-    """Return the best common offset of the all-contractile body, in cycles, and its displacement."""
+    """Return the best common offset of the all-contractile body, in cycles, and its displacement, m."""
     config = evoframe.load_config("paper")
     simulator, objective = config.simulator.component, config.objective.component
     material = np.ones((20, 8, 8), np.uint8)
@@ -98,23 +98,23 @@ def describe(name: str, runs: list[evoframe.Run], budget: float) -> dict[str, An
 
 
 def first_turn_with(finished: evoframe.Run, score: float) -> int | None:
-    """Return the turn in which a pair first reached a score, if any did."""
+    """Return the first turn in which a pair reached a score; ``None`` if no pair did."""
     return next((row["turn"] for row in finished.table("best_pairs") if row["score"] >= score), None)
 
 
 def empty_share(finished: evoframe.Run) -> float:
-    """Return the share of the interior of the champion's body that is empty."""
+    """Return the empty share of the interior of the champion's body."""
     interior = finished.champion().design.roles["morphology"][1:-1, 1:-1, 1:-1]
     return round(float((interior == 0).mean()), 3)
 
 
 def simulations(finished: evoframe.Run) -> int:
-    """Return how many simulations a run made."""
+    """Return the number of simulations of a run."""
     return sum(row["simulations"] for row in finished.workload())
 
 
 def main() -> None:
-    """Run what is missing, then print the table as JSON."""
+    """Execute the missing runs, then print the table as JSON."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

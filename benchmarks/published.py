@@ -1,7 +1,7 @@
-"""Which of the published rankings hold? Line by line, on both yardsticks.
+"""Comparison of the study ``paper`` with each published ranking, by score and by fitness.
 
-Compares the runs of the study ``paper`` with the rankings of paper.md ("The experiments", 1): by the paper's
-test, Dunn's without a correction, and corrected after Holm. Prints tables in Markdown.
+The rankings (docs/experiment.md, "The experiments") are tested with the paper's test, Dunn's without
+correction, and with Holm's correction. Prints tables in Markdown.
 
     python -m benchmarks.published docs/results/paper/rows.csv
 """
@@ -28,14 +28,14 @@ WITHIN = {
 """Number of collaborators -> the published ranking, as comparisons of neighbours."""
 OVERALL = ("WM(2) > WM(3)", "WM(3) = WM(10)", "WM(10) > AM(5)", "AM(5) = WM(7)")
 
-BEYOND = 0.006  # m: no more on the plateau
+BEYOND = 0.006  # m; greater scores are above the plateau
 ALPHA = 0.05
 
 Groups = Mapping[str, Sequence[Row]]
 
 
 def groups_of(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Return the runs of each cell, called as in ``WM(2)``."""
+    """Return the runs of each cell by its name, such as ``WM(2)``."""
     found: dict[str, list[Row]] = {}
     for row in rows:
         name = f"{row.settings['aggregator'].upper()}({row.settings['collaboration.n']})"
@@ -49,7 +49,7 @@ def values(groups: Groups, yardstick: Yardstick) -> dict[str, list[float]]:
 
 
 def verdict(relation: str, p: float, direction: int) -> str:
-    """Say whether a published relation holds: ``>`` and ``=`` as the paper writes them."""
+    """Return whether a test agrees with a published relation, ``>`` or ``=``."""
     if relation == "=":
         return "agrees" if p >= ALPHA else "**disagrees**"
     if p >= ALPHA:
@@ -58,13 +58,13 @@ def verdict(relation: str, p: float, direction: int) -> str:
 
 
 def tested(comparison: Comparison, first: str, relation: str, second: str) -> str:
-    """Return what a test says of a published relation, with its p and how often the first wins."""
+    """Return the verdict on a published relation, with the test's p and A12."""
     pair = comparison.pair(first, second)
     return f"{verdict(relation, pair.p, pair.direction)} (p {pair.p:.2g}, A12 {pair.a12:.2f})"
 
 
 def lines(groups: Groups, published: Sequence[str], label: str) -> Iterator[str]:
-    """Return a line of a table for each published relation of these groups."""
+    """Yield a line of a table for each published relation of these groups."""
     comparisons = [
         compare(values(groups, yardstick), correction)
         for yardstick in YARDSTICKS
@@ -77,7 +77,7 @@ def lines(groups: Groups, published: Sequence[str], label: str) -> Iterator[str]
 
 
 def rankings(rows: Sequence[Row]) -> Iterator[str]:
-    """Return the comparison with all published rankings."""
+    """Yield the table of all published rankings."""
     every = groups_of(rows)
     judged = ("best pair, test of the paper", "after Holm", "last fitness, test of the paper", "after Holm")
     yield f"| n | published | {' | '.join(judged)} |"
@@ -89,7 +89,7 @@ def rankings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def tests(rows: Sequence[Row]) -> Iterator[str]:
-    """Return whether averages differ for each number of collaborators, and these for all averages."""
+    """Yield the table of tests: averages for each number of collaborators, and numbers for all averages."""
     every = groups_of(rows)
     compared: dict[str, Groups] = {n: {name: every[f"{name}({n})"] for name in AVERAGES} for n in WITHIN}
     compared["2 to 10"] = {f"n = {n}": [row for part in compared[n].values() for row in part] for n in WITHIN}
@@ -98,12 +98,12 @@ def tests(rows: Sequence[Row]) -> Iterator[str]:
     for n, groups in compared.items():
         for yardstick in YARDSTICKS:
             found = compare(values(groups, yardstick))
-            told = f"{found.h:.2f} | {found.p:.2g} | {found.epsilon_squared:.3f} | {found.ranking}"
-            yield f"| {n} | {yardstick} | {told} |"
+            figures = f"{found.h:.2f} | {found.p:.2g} | {found.epsilon_squared:.3f} | {found.ranking}"
+            yield f"| {n} | {yardstick} | {figures} |"
 
 
 def cells(rows: Sequence[Row]) -> Iterator[str]:
-    """Return how the values of each cell lie, in millimetres."""
+    """Yield the table of each cell's values, in millimeters."""
     shown = ("best pair: median", "quartiles", "mean", "above 6 mm", "last fitness: median", "mean")
     yield f"| n | average | runs | {' | '.join(shown)} |"
     yield "|---|---|---|---|---|---|---|---|---|"
@@ -116,9 +116,9 @@ def cells(rows: Sequence[Row]) -> Iterator[str]:
             )
             low, middle, high = statistics.quantiles(scores, n=4, method="inclusive")
             beyond = sum(score > 1000 * BEYOND for score in scores)
-            told = f"{middle:.3f} | {low:.3f}, {high:.3f} | {statistics.fmean(scores):.3f} | {beyond}"
+            best = f"{middle:.3f} | {low:.3f}, {high:.3f} | {statistics.fmean(scores):.3f} | {beyond}"
             last = f"{statistics.median(fitness):.3f} | {statistics.fmean(fitness):.3f}"
-            yield f"| {n} | {name} | {len(scores)} | {told} | {last} |"
+            yield f"| {n} | {name} | {len(scores)} | {best} | {last} |"
 
 
 def main() -> None:

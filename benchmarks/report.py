@@ -1,4 +1,4 @@
-"""What a section has measured: tables, for people and as JSON."""
+"""Results of a section: tables, printed and as JSON."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ Row: TypeAlias = tuple[Cell, ...]
 
 
 class SectionError(Exception):
-    """A section cannot be measured here; says why."""
+    """A section that cannot be measured on this machine."""
 
 
 @attrs.frozen
 class Table:
-    """Figures side by side.
+    """A table of figures.
 
     Attributes:
-        title: What they are.
-        columns: Names, with the unit.
+        title: Title of the table.
+        columns: Names of the columns, with units.
         rows: A cell for each column; the first names the row.
-        note: What one has to know to read them.
+        note: Explanation of the figures.
     """
 
     title: str
@@ -43,10 +43,10 @@ class Table:
 
 @attrs.frozen
 class Section:
-    """All that one section has to say.
+    """The results of a section.
 
     Attributes:
-        title: What was measured.
+        title: The quantity measured.
         tables: The figures.
     """
 
@@ -54,7 +54,7 @@ class Section:
     tables: tuple[Table, ...]
 
     def to_json(self) -> dict[str, Any]:
-        """Return it as JSON values: the rows of every table by its title."""
+        """Return the section as JSON values: the rows of each table by its title."""
         return {"title": self.title, "tables": {table.title: table.records() for table in self.tables}}
 
 

@@ -1,4 +1,4 @@
-"""Where the time of a program goes, measured from outside: its methods are wrapped while they are watched."""
+"""CPU time of the stages of a program, measured by temporary wrappers around its methods."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ import attrs
 __all__ = ["Stages", "Watched"]
 
 Watched: TypeAlias = tuple[type, str, str]
-"""Class, name of a method, name of the stage that its calls are."""
+"""Class, name of a method, name of the stage to which its calls belong."""
 
 
 class _Nesting(threading.local):
-    """The stages that a thread is in: for each the CPU time that it left to others."""
+    """The nested stages of a thread, each with the CPU time of its inner stages, s."""
 
     def __init__(self) -> None:
         self.left: list[float] = []
@@ -28,12 +28,12 @@ class _Nesting(threading.local):
 
 @attrs.define
 class Stages:
-    """CPU time of stages in all threads of a program; a stage within another counts for itself alone.
+    """CPU time of stages in all threads of a program; the time of a stage excludes its inner stages.
 
     Attributes:
-        cpu: Stage -> s.
-        calls: Stage -> how often it was entered.
-        spans: Stage -> when it was entered and left, s of the wall clock.
+        cpu: Stage -> CPU time, s.
+        calls: Stage -> number of calls.
+        spans: Stage -> begin and end of each call, s of wall clock.
     """
 
     cpu: defaultdict[str, float] = attrs.field(factory=lambda: defaultdict(float))
@@ -44,7 +44,7 @@ class Stages:
 
     @contextlib.contextmanager
     def watch(self, methods: Iterable[Watched]) -> Iterator[None]:
-        """Watch methods of classes for a while."""
+        """Measure methods of classes within a ``with`` block."""
         with contextlib.ExitStack() as stack:
             for owner, name, stage in methods:
                 wrapped = self._wrapped(getattr(owner, name), stage)
@@ -52,7 +52,7 @@ class Stages:
             yield
 
     def elapsed(self, stage: str) -> float:
-        """Return for how long, s of the wall clock, at least one thread was in a stage."""
+        """Return the time, s of wall clock, during which at least one thread was in a stage."""
         total, reached = 0.0, 0.0
         for begin, end in sorted(self.spans.get(stage, ())):
             total += max(0.0, end - max(begin, reached))

@@ -1,4 +1,4 @@
-"""What is measured: the paper's setting, its published bodies, and random ones."""
+"""Subjects of the benchmarks: the paper's setting, its published bodies, and random bodies."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ def model(
     """Return the solver's model of the paper's setting.
 
     Args:
-        kernel: By default the fastest.
-        whole_body: Whether what cannot reach a sample any more is computed too.
-        passive: Whether nothing contracts.
+        kernel: Name of the kernel; by default the fastest.
+        whole_body: Whether to compute the voxels that can no longer affect a sample too.
+        passive: Whether to disable all contraction.
         **changes: Other settings of the solver.
     """
     simulator = attrs.evolve(vox(), expansion_coefficient=0.0) if passive else vox()
@@ -88,7 +88,7 @@ def model(
 
 @functools.cache
 def solid() -> Design:
-    """Return the bar in which every interior voxel contracts, in a wave along x."""
+    """Return the bar whose interior voxels all contract, in a wave along x."""
     body = encoder(MORPHOLOGY).decode(lambda points: np.ones((len(points), 2)), Design())
     material = body.roles[MORPHOLOGY]
     if not np.isin(material, (PASSIVE, CONTRACTILE)).all():
@@ -99,7 +99,7 @@ def solid() -> Design:
 
 @functools.cache
 def published() -> dict[str, Design]:
-    """Return the published bodies with each of their offsets, by name: ``HyperNEAT, sin offsets``."""
+    """Return the published bodies with each of their offsets by name, such as ``HyperNEAT, sin offsets``."""
     with np.load(_PUBLISHED) as arrays:
         rows = zip(arrays["label"].tolist(), arrays["material"], arrays["phase_cycles"], strict=True)
         return {
@@ -110,7 +110,7 @@ def published() -> dict[str, Design]:
 
 
 def random_designs(bodies: int, controllers: int) -> list[list[Design]]:
-    """Return random bodies, each with the same random controllers, drawn by the evolver ``random``."""
+    """Return random bodies, all with the same random controllers, drawn by the evolver ``random``."""
     drawn = [encoder(MORPHOLOGY).decode(network, Design()) for network in _networks(MORPHOLOGY, bodies)]
     networks = _networks(CONTROLLER, controllers)
     return [[encoder(CONTROLLER).decode(network, body) for network in networks] for body in drawn]
@@ -123,14 +123,14 @@ def _networks(role: str, count: int) -> list[Network]:
 
 
 def bonds_of(design: Design) -> int:
-    """Return how many pairs of voxels of a body are joined face to face."""
+    """Return the number of pairs of voxels of a body that are joined face to face."""
     there = design.roles[MORPHOLOGY] != 0
     pairs = ((there[1:], there[:-1]), (there[:, 1:], there[:, :-1]), (there[..., 1:], there[..., :-1]))
     return sum(int((lower & upper).sum()) for lower, upper in pairs)
 
 
 def solving(of: Model, designs: Sequence[Design]) -> Action:
-    """Return the call of the solver that simulates designs with the samples of the paper's objective."""
+    """Return a call of the solver that simulates designs with the samples of the paper's objective."""
     material: NDArray[np.uint8] = np.stack([design.roles[MORPHOLOGY] for design in designs])
     phase: NDArray[np.float64] = np.stack([design.roles[CONTROLLER] for design in designs])
     record = objective().record
@@ -139,6 +139,6 @@ def solving(of: Model, designs: Sequence[Design]) -> Action:
 
 
 def evaluating(simulator: Vox, designs: Sequence[Design]) -> Action:
-    """Return the evaluation of designs as a run does it: simulated and scored."""
+    """Return the evaluation of designs as in a run: simulation and scoring."""
     record = objective().record
     return lambda: [objective().score(outcome) for outcome in simulator.simulate(designs, record)]

@@ -1,4 +1,4 @@
-"""How times are taken: medians of rounds in which all that is compared has its turn."""
+"""Timing: medians over rounds, each of which executes all compared actions once."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ Clock: TypeAlias = Callable[[], float]
 
 @attrs.frozen
 class Effort:
-    """How much is measured.
+    """The extent of a measurement.
 
     Attributes:
-        rounds: Of which medians are taken.
-        shortest: Time that an action is given in a round at least, s.
-        designs: Random bodies, networks and the like.
-        generations: Of a population that evolves on its own.
-        run: Settings of whole runs that make them shorter.
-        run_rounds: Of whole runs.
+        rounds: Number of rounds for each median.
+        shortest: Minimum duration of an action in a round, s; shorter actions are repeated.
+        designs: Number of random bodies, networks and the like.
+        generations: Number of generations of a population that evolves alone.
+        run: Settings that make whole runs shorter.
+        run_rounds: Number of rounds of whole runs.
     """
 
     rounds: int
@@ -56,13 +56,13 @@ def interleaved(
 ) -> dict[K, float]:
     """Return the median time of each action, s.
 
-    Each is done once to warm up, and then once a round (or as often as the shortest time asks for), one after
-    the other: what disturbs the machine for a while disturbs all of them.
+    Each action is executed once to warm up, and then once per round (or as often as the minimum duration
+    requires). Actions are interleaved, so that a temporary load on the machine affects all of them.
 
     Args:
-        actions: What is compared.
-        effort: How many rounds, and how long each action goes on in one.
-        clock: CPU time of this thread, or wall clock for what works in several.
+        actions: The actions to compare.
+        effort: Number of rounds, and minimum duration of each action.
+        clock: CPU time of this thread, or wall clock for actions that use several threads.
     """
     times = {key: _repetitions(action, effort.shortest, clock) for key, action in actions.items()}
     taken: dict[K, list[float]] = {key: [] for key in actions}
@@ -73,7 +73,7 @@ def interleaved(
 
 
 def cores_used(action: Action) -> float:
-    """Return the CPU time of this process over the wall clock, while it does something."""
+    """Return the ratio of CPU time of this process to wall clock during an action."""
     began, cpu_began = time.perf_counter(), time.process_time()
     action()
     return (time.process_time() - cpu_began) / (time.perf_counter() - began)

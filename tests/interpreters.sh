@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Runs the tests with each other CPython that the project allows and that is installed: a wheel is built once, and
-# installed in a new environment for each. Ruff and mypy check the code for those that are not installed. Everything
-# it builds is in a directory that it removes.
+# Runs the tests with each other installed version of CPython that the project supports. A wheel is built once and
+# installed in a new environment for each version. For versions that are not installed, ruff and mypy check the code.
+# All files are built in a temporary directory, which is removed at the end.
 #
 #   PYTHON=/path/to/python tests/interpreters.sh [pytest options]
 #
-# PYTHON has the project's development tools. VERSIONS="3.12 3.13" chooses other versions.
+# PYTHON is an interpreter with the project's development tools. VERSIONS="3.12 3.13" selects versions.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -16,7 +16,7 @@ place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 cd "$root"
 
-# The version of an interpreter with its last number, if it is CPython VERSION.
+# Prints the full version of an interpreter; fails if it is not CPython $2.
 full_version() {
     "$1" -c 'import platform, sys
 if platform.python_implementation() != "CPython" or not platform.python_version().startswith(sys.argv[1] + "."):
@@ -24,7 +24,7 @@ if platform.python_implementation() != "CPython" or not platform.python_version(
 print(platform.python_version())' "$2" 2>/dev/null
 }
 
-# pyenv keeps interpreters that are not on the path.
+# Also searches the interpreters of pyenv, which are not on the path.
 find_interpreter() {
     local candidate
     local candidates=("python$1")
@@ -44,9 +44,9 @@ uv() {
     "$tools/uv" --quiet "$@"
 }
 
-# Only faults: what a later Python could express otherwise has to wait until the project needs that Python.
+# Selects errors only: style rules for newer versions do not apply until the project requires such a version.
 check_version() {
-    echo "== Python $1: not installed; ruff and mypy =="
+    echo "== Python $1: not installed; running ruff and mypy =="
     "$tools/ruff" check --select E9,F,PLE --target-version "py${1/./}" || return 1
     "$tools/mypy" --python-version "$1" || return 1
 }
@@ -74,5 +74,5 @@ for version in "${versions[@]}"; do
     fi
 done
 
-echo "passed: ${passed[*]:-none}; not installed, and checked by ruff and mypy only: ${missing[*]:-none}"
+echo "passed: ${passed[*]:-none}; not installed, checked with ruff and mypy only: ${missing[*]:-none}"
 [[ ${#failed[@]} == 0 ]] || { printf 'interpreters.sh: failed: %s\n' "${failed[@]}" >&2; exit 1; }

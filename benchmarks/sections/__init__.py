@@ -1,1 +1,1 @@
-"""The sections of ``python -m benchmarks``: one question each."""
+"""The sections of ``python -m benchmarks``."""

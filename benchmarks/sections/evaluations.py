@@ -1,4 +1,4 @@
-"""What does one evaluation cost, and what of it are contacts?"""
+"""CPU time of an evaluation, and the share of contacts in it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from evoframe import Design
 
 __all__ = ["evaluations"]
 
-_BATCH = 4  # as a run has them: controllers of one body
+_BATCH = 4  # controllers of one body, as in a run
 
 
 def evaluations(effort: Effort) -> Section:
@@ -62,9 +62,9 @@ def _published(effort: Effort) -> Table:
         "Published bodies, with self collision",
         ("body", "voxels", "bonds", "alone, us", f"in a batch of {_BATCH}, us", "scalar, us", "times scalar"),
         rows,
-        f"Simulated and scored through the simulator vox, with {fast.kernel}. A batch is what a run hands "
-        f"out: {_BATCH} controllers that share the set-up of their body. The last two columns are the part "
-        "of the solver with the scalar kernel, and that over its part with the fastest.",
+        f"Simulated with the simulator vox (kernel {fast.kernel}) and scored. A batch is the unit of work of "
+        f"a run: {_BATCH} controllers that share the set-up of their body. The last two columns are the time "
+        "of the solver with the scalar kernel, and its ratio to that with the fastest kernel.",
     )
 
 
@@ -120,8 +120,8 @@ def _contacts(effort: Effort) -> Table:
             *(f"{batch}, ms", f"{batch} without, ms", f"{batch}: share of contacts"),
         ),
         rows,
-        "Goals: 0.8 ms, and contacts at most 0.25. The share is what is saved where voxels do not repel each "
-        "other: the list of contacts, their forces, and what has to be computed because of them.",
+        "Goals: 0.8 ms, and contacts at most 0.25. The share is the time saved without self collision: the "
+        "list of contacts, their forces, and the voxels that must be computed because of them.",
     )
 
 
@@ -144,7 +144,7 @@ def _shrinking(effort: Effort) -> Table:
         for name in bodies
     ]
     return Table(
-        "Shrinking: computing only what can still reach a sample",
+        "Shrinking: computing only voxels that can still affect a sample",
         ("body", "on, us", "off, us", "off / on"),
         rows,
         f"Calls of the solver for batches of {_BATCH}; the results are the same to the last bit.",

@@ -1,4 +1,4 @@
-"""What does NEAT itself cost?"""
+"""CPU time of NEAT itself."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ _SEED = 1
 
 
 def evolution(effort: Effort) -> Section:
-    """Let both populations of the preset ``paper`` evolve by random fitness."""
+    """Time the evolution of both populations of the preset ``paper`` with random fitness."""
     rows = tuple(row for role in ("morphology", "controller") for row in _measured(role, effort.generations))
     table = Table(
-        f"ms a generation of 25 genomes, mean of {effort.generations}",
+        f"ms per generation of 25 genomes, mean of {effort.generations}",
         ("stage", "ms", "share"),
         rows,
-        "The fitness is random, the setting that of paper. CPU time; what this is of a run is in the section "
+        "The fitness is random, the setting that of paper. CPU time; for its share of a run, see the section "
         "runs.",
     )
-    return Section("reproduction and speciation of a population on its own", (table,))
+    return Section("reproduction and speciation of a single population", (table,))
 
 
 def _measured(role: str, generations: int) -> list[tuple[str, float, float]]:

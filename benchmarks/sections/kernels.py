@@ -1,4 +1,4 @@
-"""How fast is each kernel that this processor can use?"""
+"""Speed of each kernel that this processor supports."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evoframe_libvox import KERNELS, Model
 
 __all__ = ["kernels"]
 
-_BATCH = 8  # so that the set-up of the body, which they share, hardly counts
+_BATCH = 8  # so that the shared set-up of the body is negligible
 
 
 @attrs.frozen
@@ -68,9 +68,9 @@ def kernels(effort: Effort) -> Section:
         f"ns per bond-step on the solid canvas: {bonds:,} bonds, {steps} steps",
         ("kernel", *columns),
         rows,
-        f"Whole calls for {_BATCH} controllers of the body: set-up, bonds, motion and samples, over bonds "
-        "times steps. The first two ways compute the whole body to the end, without self collision; at rest "
-        "nothing contracts, so that all bonds are in the small frame. CPU time. Goals: avx512 4.5, avx2 2.7 "
+        f"Whole calls for {_BATCH} controllers of the body: set-up, bonds, motion and samples, divided by "
+        "bonds times steps. The first two ways compute the whole body to the end, without self collision; at "
+        "rest no voxel contracts, so all bonds are in the small frame. CPU time. Goals: avx512 4.5, avx2 2.7 "
         "times as fast as scalar.",
     )
-    return Section("time per bond-step of every kernel", (table,))
+    return Section("time per bond-step of each kernel", (table,))

@@ -1,4 +1,4 @@
-"""How fast are networks, beside neat-python's?"""
+"""Speed of networks compared with those of neat-python."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ _SHARED = tuple(name for name in ACTIVATIONS if ActivationFunctionSet().is_valid
 
 
 def networks(effort: Effort) -> Section:
-    """Time random genomes of both populations, as they begin and with hidden nodes."""
+    """Time random genomes of both populations, initial ones and ones with hidden nodes."""
     rows: list[Row] = [
         row for role in _ENDS for mutations in _MUTATIONS for row in [_measured(role, mutations, effort)]
     ]
     table = Table(
-        f"Networks at {np.prod(_GRID)} points, us a network",
+        f"Networks at {np.prod(_GRID)} points, us per network",
         ("genomes", "nodes", "compiled once", "evaluated", "neat-python", "times neat-python"),
         rows,
-        f"The same {effort.designs} genomes, of activations that both have, and with outputs that agree. "
-        "neat-python's FeedForwardNetwork, which is asked for one point at a time, is made beforehand too; "
-        "compiling is what a genome costs here before its first point. CPU time.",
+        f"The same {effort.designs} genomes, with activations that both support, and with equal outputs. "
+        "neat-python's FeedForwardNetwork evaluates one point at a time, and is created beforehand too; "
+        "compiling is the cost of a genome in evoframe before its first point. CPU time.",
     )
     return Section("CPPNs against those of neat-python", (table,))
 
@@ -59,7 +59,7 @@ def _measured(role: str, mutations: int, effort: Effort) -> tuple[str | float, .
     }
     taken = {name: 1e6 * time / len(genomes) for name, time in interleaved(actions, effort).items()}
     return (
-        f"{role}, {f'up to {mutations} mutations' if mutations else 'as they begin'}",
+        f"{role}, {f'up to {mutations} mutations' if mutations else 'initial'}",
         float(np.mean([len(genome.nodes) for genome in genomes])),
         taken["compiled"],
         taken["evaluated"],
@@ -69,7 +69,7 @@ def _measured(role: str, mutations: int, effort: Effort) -> tuple[str | float, .
 
 
 def _points(inputs: int) -> NDArray[np.float64]:
-    """Return indices of voxels, and what a controller sees beside them: the code of their material."""
+    """Return indices of voxels and, for a controller, the code of their material."""
     grid = np.stack(np.meshgrid(*(np.arange(n, dtype=np.float64) for n in _GRID), indexing="ij"), axis=-1)
     points = grid.reshape(-1, 3)
     return np.hstack([points, np.full((len(points), inputs - 3), 3.0)])
@@ -82,4 +82,4 @@ def _activated(network: Any, points: NDArray[np.float64]) -> list[list[float]]:
 def _compare(ours: Sequence[CppnNetwork], theirs: Sequence[Any], points: NDArray[np.float64]) -> None:
     for mine, other in zip(ours, theirs, strict=True):
         if not np.allclose(mine(points), _activated(other, points), rtol=1e-9, atol=1e-9):
-            raise SectionError("a network and neat-python's disagree, so their times say nothing")
+            raise SectionError("outputs differ from those of neat-python, so the times are not comparable")

@@ -1,4 +1,4 @@
-"""How far are the kernels from what the machine can do?"""
+"""Speed of the kernels relative to the measured peak of a core."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ __all__ = ["roofline"]
 class Work:
     """Operations on doubles: additions, subtractions and multiplications; divisions; square roots.
 
-    Changes of sign, absolute values, comparisons and choices are not counted, nor is the arithmetic of
-    indices; what an expression needs twice is counted once.
+    Changes of sign, absolute values, comparisons, selections and the arithmetic of indices are not counted;
+    common subexpressions are counted once.
     """
 
     operations: int
@@ -30,7 +30,7 @@ class Work:
     roots: int = 0
 
     def __add__(self, other: Work) -> Work:
-        """Return the work of both."""
+        """Return the sum of both."""
         return Work(
             self.operations + other.operations, self.divisions + other.divisions, self.roots + other.roots
         )
@@ -40,7 +40,7 @@ class Work:
 _MATRIX = Work(29)  # matrix_of: 10 products, 7 sums for the diagonal, 6 sums and 6 doublings beside it
 _TURN = Work(15)  # turn, turn_back
 _CHORD = Work(10)  # arc_ratio: 8 of the power series, a difference before and a doubling after
-_ARC = Work(34, divisions=1, roots=2)  # arc_ratio of a bond that is turned far, beside the chord
+_ARC = Work(34, divisions=1, roots=2)  # arc_ratio of a bond that is turned far, in addition to the chord
 
 _LOOK = Work(3 + 28 + 2 + 1 + 8) + _TURN  # apart, quaternion product, rest, aside, limits; to the frame
 _STRAIGHTEN = Work(5 + 11 + 20, divisions=3, roots=2)  # length, onto_x, quaternion product
@@ -65,8 +65,8 @@ _SIZE = Work(7)
 VOXEL = _MATRIX + _ADD + _MOVE + _ROTATE + _SIZE
 """Work of a voxel's step: its frame and the sum of its forces as a lower end, and its motion."""
 
-# Doubles that are read and written in a step at least: each array once for all bonds, once for the motion.
-# there, small and the eight of the last deformation; all but `there` are written
+# Minimum number of doubles read and written in a step: each array once for all bonds, once for the motion.
+# there, small and the eight of the last deformation; all but `there` are also written
 _BOND_DOUBLES = (10 + 9) * 3  # a voxel: bonds along three axes
 _END_DOUBLES = 8 + 6 + 6  # position, orientation, size; force and torque, read and written
 _MOTION_DOUBLES = 32 + 20  # of move_tile, turn_tile and size_tile: read, written
@@ -74,7 +74,7 @@ VOXEL_BYTES = 8 * (_BOND_DOUBLES + _END_DOUBLES + _MOTION_DOUBLES)
 """Traffic of a voxel's step, with its bonds."""
 
 ARRAYS = 3 * 10 + 32
-"""Arrays of doubles of a body that the kernels use."""
+"""Number of arrays of doubles that the kernels use for a body."""
 
 _BATCH = 8
 _MEMORY = 192 * 2**20  # beyond any cache, bytes
@@ -122,8 +122,8 @@ def _work() -> Table:
         "Work of a step, counted in libvox/kernels/vector_bonds.h and vector_motion.h",
         ("", "add and multiply", "divide", "square root"),
         tuple((name, work.operations, work.divisions, work.roots) for name, work in rows),
-        f"Traffic: {VOXEL_BYTES:,} bytes a voxel with its bonds and its motion, "
-        f"{VOXEL_BYTES * _voxels_per_bond():.0f} a bond on the solid canvas, in {ARRAYS} arrays.",
+        f"Traffic: {VOXEL_BYTES:,} bytes per voxel with its bonds and its motion, "
+        f"{VOXEL_BYTES * _voxels_per_bond():.0f} per bond on the solid canvas, in {ARRAYS} arrays.",
     )
 
 
@@ -143,8 +143,8 @@ def _peaks(peaks: Mapping[str, Peak], near: Mapping[str, float], held: int, far:
         ("instructions", "add and multiply, 1e9/s", "divide, 1e9/s", "square root, 1e9/s", "traffic, GB/s"),
         rows,
         f"benchmarks/peaks.c, the best of five. Traffic: two arrays read, one written, {held / 1000:.0f} kB, "
-        "as much as the kernels use of the solid canvas; beyond the caches, in "
-        f"{_MEMORY / 2**20:.0f} MB, it is {far / 1e9:.3g} GB/s.",
+        "the size that the kernels use for the solid canvas; beyond the caches, in "
+        f"{_MEMORY / 2**20:.0f} MiB, it is {far / 1e9:.3g} GB/s.",
     )
 
 
@@ -179,6 +179,6 @@ def _fractions(measured: Mapping[str, float], peaks: Mapping[str, Peak], near: M
         ),
         rows,
         f"A bond in the small frame and its part of a voxel: {operations:.0f} operations, "
-        f"{operations / (VOXEL_BYTES * voxels):.2f} a byte. The limit is the greatest of the three. Missing "
-        "bonds and empty cells are computed too but not counted, nor are set-up and samples.",
+        f"{operations / (VOXEL_BYTES * voxels):.2f} per byte. The limit is the greatest of the three. Not "
+        "counted: missing bonds and empty cells, which are computed too, set-up and samples.",
     )

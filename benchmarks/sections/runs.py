@@ -1,4 +1,4 @@
-"""Where does the time of a whole run go?"""
+"""Time of a whole run by stage, and its memory and disk space."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ Batch: TypeAlias = Sequence[Design]
 
 _SIMULATION = "simulation"
 _SAVING = ("saving", "state for the record")
-_EVERY = 4  # batch of a run is simulated again
+_EVERY = 4  # the interval of the batches that are simulated again
 _WORKERS = (1, 2)
 
 
 @attrs.frozen
 class _Played:
-    """A run that was watched.
+    """Figures of a run.
 
     Attributes:
-        wall: Of the loop and its record, s.
-        verifying: Of the champion's verification afterwards, s.
-        cpu: Stage -> s, of all threads; with the rest.
-        simulating: For how long at least one thread has simulated, s.
-        saving: For how long the run was being saved, s.
-        size: Of the run's directory, MB.
-        pairs: How many the run needed, and how many of them were simulated.
+        wall: Wall clock of the loop and its record, s.
+        verifying: Wall clock of the champion's verification, s.
+        cpu: Stage -> CPU time of all threads, s; includes the rest.
+        simulating: Time during which at least one thread simulated, s.
+        saving: Time during which the run was being saved, s.
+        size: Size of the run's directory, MB.
+        pairs: Number of pairs scored, and of pairs simulated.
     """
 
     wall: float
@@ -70,7 +70,7 @@ def runs(effort: Effort) -> Section:
     for _ in range(effort.run_rounds):
         for workers, config in configs.items():
             first = workers == 1 and not played[workers]
-            with _noting(config, batches) if first else contextlib.nullcontext():
+            with _recording(config, batches) if first else contextlib.nullcontext():
                 played[workers].append(_play(config))
     more = _play(_config(effort, 10, 2))
     replayed, used = _replayed(effort, configs, batches)
@@ -158,29 +158,29 @@ def _watched_populations(config: RunConfig) -> Iterator[Watched]:
 def _check_reached(stages: Stages, config: RunConfig) -> None:
     for _, method, stage in _watched(config):
         if not stages.calls[stage]:
-            raise SectionError(f"the stage '{stage}' was never reached; does a run still call {method}()?")
+            raise SectionError(f"the stage '{stage}' was never reached; a run no longer calls {method}()")
 
 
 @contextlib.contextmanager
-def _noting(config: RunConfig, batches: list[Batch]) -> Iterator[None]:
-    """Note every fourth batch that is simulated meanwhile."""
+def _recording(config: RunConfig, batches: list[Batch]) -> Iterator[None]:
+    """Record every fourth batch simulated within a ``with`` block."""
     simulator = type(config.simulator.component)
     simulate: Any = simulator.simulate
     number = itertools.count()
 
-    def noted(component: Any, designs: Batch, record: Any) -> Any:
+    def recorded(component: Any, designs: Batch, record: Any) -> Any:
         if next(number) % _EVERY == 0:
             batches.append(designs)
         return simulate(component, designs, record)
 
-    with mock.patch.object(simulator, "simulate", noted):
+    with mock.patch.object(simulator, "simulate", recorded):
         yield
 
 
 def _replayed(
     effort: Effort, configs: Mapping[int, RunConfig], batches: Sequence[Batch]
 ) -> tuple[dict[int, float], float]:
-    """Return how long the batches take with each number of workers, s, and the cores that two of them use."""
+    """Return the time of the batches for each number of workers, s, and the cores that two workers use."""
     started = {workers: config.executor.component.start() for workers, config in configs.items()}
     simulate, record = configs[1].simulator.component.simulate, configs[1].objective.component.record
 
@@ -218,11 +218,10 @@ def _stages(played: Mapping[int, Sequence[_Played]]) -> Table:
         "CPU time by stage, collaboration.n = 2",
         ("stage", "1 worker, s", "share", "2 workers, s", "share with 2"),
         rows,
-        "CPU time of all threads, each stage without those within it: decoding without the networks, "
-        "reproduction without speciation. The rest is the loop, the executor and the interpreter. With two "
-        "workers one thread may decode and reproduce while the other simulates: the sum is what is done, the "
-        "wall clock how long it takes, which is less than the sum by what overlaps. The median of each stage "
-        "in interleaved runs.",
+        "CPU time of all threads; each stage excludes its inner stages (decoding excludes the networks, "
+        "reproduction excludes speciation). The rest is the loop, the executor and the interpreter. With two "
+        "workers, one thread may decode and reproduce while the other simulates, so the wall clock is less "
+        "than the sum. The median of each stage over interleaved runs.",
     )
 
 
@@ -241,8 +240,7 @@ def _whole(played: Mapping[int, Sequence[_Played]], more: _Played) -> Table:
         "Whole runs, without and with the verification of the champion",
         ("run", "wall clock, s", "cores used", "with verification, s", "pairs", "simulated", "pairs per s"),
         tuple(rows),
-        "Wall clock; the median of interleaved runs, n = 10 once. Pairs that were simulated before are not "
-        "simulated again.",
+        "Wall clock; the median of interleaved runs; n = 10 once. Repeated pairs are not simulated again.",
     )
 
 
@@ -268,11 +266,10 @@ def _simulation(played: Mapping[int, Sequence[_Played]], replayed: Mapping[int, 
             ("at least one thread simulates", *ratio(simulating)),
             ("whole run", *ratio(walls)),
         ),
-        f"Replayed: every {_EVERY}th batch of the run by the run's executor, with nothing else; goal 1.7. "
-        f"Two workers used {used:.2f} cores for it: where that is much less than 2, something else had the "
-        "rest. In the run itself one of two workers may also decode and reproduce meanwhile, so that "
-        "simulation lasts longer than half the time, and the run gains by what would otherwise come before "
-        "and after.",
+        f"Replayed: every {_EVERY}th batch of the run, simulated alone by the run's executor; goal 1.7. Two "
+        f"workers used {used:.2f} cores for it: if that is much less than 2, other processes used the rest. "
+        "In the run itself, one of two workers may decode and reproduce while the other simulates, so "
+        "simulation takes more than half the time of one worker, but the whole run is shorter.",
     )
 
 
@@ -290,7 +287,7 @@ def _saving(played: Mapping[int, Sequence[_Played]]) -> Table:
         "Saving, wall clock",
         ("run", "saving, s", "of the wall clock", "directory, MB"),
         rows,
-        "The state after each turn, its rows, and the champion's files; nothing else is done meanwhile. Goal "
+        "The state after each turn, its rows, and the champion's files; the loop waits meanwhile. Goals: "
         "below 0.08 and 5 MB.",
     )
 
@@ -304,5 +301,5 @@ def _memory(effort: Effort) -> Table:
         "The command evoframe -q run",
         ("", "peak memory, MB", "wall clock, s"),
         (("n = 2, 2 workers", size, seconds),),
-        "Greatest resident size; goal below 250 MB. With the start of Python, verification and all files.",
+        "Peak resident size; goal below 250 MB. Includes the start of Python, verification and all files.",
     )

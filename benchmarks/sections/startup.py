@@ -1,4 +1,4 @@
-"""How long does the command line take before it does anything?"""
+"""Start-up time of the command line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from benchmarks.timing import Action, Effort, interleaved
 
 __all__ = ["startup"]
 
-_PYTHON = "import click, rich.console"  # what the command line is made of
+_PYTHON = "import click, rich.console"  # the libraries of the command line
 _COMMANDS = {
     f'python -c "{_PYTHON}"': ["-c", _PYTHON],
     "evoframe --version": ["-m", "evoframe", "--version"],
@@ -21,7 +21,7 @@ _COMMANDS = {
 
 
 def startup(effort: Effort) -> Section:
-    """Time the commands that load no command, and a program that only imports their libraries."""
+    """Time the calls that load no command, and a program that only imports the same libraries."""
     actions: dict[str, Action] = {
         name: functools.partial(_run, arguments) for name, arguments in _COMMANDS.items()
     }

@@ -1,4 +1,4 @@
-"""Do threads simulate side by side?"""
+"""Parallel simulation in threads."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def threads(effort: Effort) -> Section:
         f"Evaluations per second: {len(bodies)} random bodies with {_CONTROLLERS} controllers each",
         ("", "1 thread, 1/s", "2 threads, 1/s", "2 threads / 1", "cores used by 2"),
         rows,
-        f"Wall clock, on {cores()} cores. The controllers of a batch have the same body. Nothing but "
-        "simulation and scoring: goal 1.7. Where two threads use much less than two cores, something else "
-        "had the rest, and the ratio says nothing.",
+        f"Wall clock, on {cores()} cores. The controllers of a batch have the same body. Only simulation and "
+        "scoring; goal 1.7. If two threads use much less than two cores, other processes used the rest, and "
+        "the ratio is not reliable.",
     )
     return Section("batches on one thread and on two", (table,))
 

@@ -1,4 +1,4 @@
-"""The form of a source tree is counted as one would by hand."""
+"""The figures of a source tree equal those counted by hand."""
 
 from __future__ import annotations
 
@@ -40,5 +40,5 @@ def test_everything_is_counted(tree: Path) -> None:
     assert form.code == 6 + 2
 
 
-def test_this_house_has_no_circles() -> None:
+def test_this_source_has_no_circular_imports() -> None:
     assert form_of(Path(__file__).parents[2]).circles == ()

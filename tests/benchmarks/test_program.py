@@ -1,4 +1,4 @@
-"""``python -m benchmarks`` runs; how long anything takes is no test's business."""
+"""``python -m benchmarks`` runs; the measured times are not tested."""
 
 import json
 import math
@@ -15,7 +15,7 @@ ROOT = Path(__file__).parent.parent.parent
 
 
 def figures(values: Any, path: str = "") -> Iterator[tuple[str, float]]:
-    """Yield all numbers of a document with what leads to them."""
+    """Yield all numbers of a document, each with its path."""
     if isinstance(values, dict):
         for key, value in values.items():
             yield from figures(value, f"{path}/{key}")
@@ -28,7 +28,7 @@ def figures(values: Any, path: str = "") -> Iterator[tuple[str, float]]:
 
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Any]]:
-    """What a quick run of all sections prints and writes."""
+    """The printed output and the JSON document of a quick run of all sections."""
     file = tmp_path_factory.mktemp("benchmarks") / "figures.json"
     finished = python("-m", "benchmarks", "--quick", "--json", file, directory=ROOT)
     assert finished.returncode == 0, finished.stdout + finished.stderr
@@ -47,7 +47,7 @@ def test_every_section_is_in_the_document(quick: tuple[str, dict[str, Any]]) -> 
     assert all(section["tables"] for section in document["sections"].values())
 
 
-def test_it_says_on_what_was_measured(quick: tuple[str, dict[str, Any]]) -> None:
+def test_the_machine_is_described(quick: tuple[str, dict[str, Any]]) -> None:
     printed, document = quick
     for about in ("processor", "kernels", "compiler", "flags of libvox", "python", "load at the start"):
         assert document["machine"][about]
@@ -55,7 +55,7 @@ def test_it_says_on_what_was_measured(quick: tuple[str, dict[str, Any]]) -> None
 
 
 def test_figures_are_finite_and_positive(quick: tuple[str, dict[str, Any]]) -> None:
-    """But a share of contacts is a difference of two times, and a count may be 0."""
+    """Exceptions: a share of contacts is a difference of two times, and a count may be 0."""
     _, document = quick
     found = dict(figures(document["sections"]))
     counts = ("divide", "square root")
@@ -65,7 +65,7 @@ def test_figures_are_finite_and_positive(quick: tuple[str, dict[str, Any]]) -> N
     assert [path for path in found.keys() - free if found[path] <= 0.0] == []
 
 
-def test_a_section_can_be_asked_for(tmp_path: Path) -> None:
+def test_sections_can_be_selected(tmp_path: Path) -> None:
     file = tmp_path / "figures.json"
     finished = python(
         "-m",
@@ -88,5 +88,6 @@ def test_without_a_compiler_the_roofline_fails_by_name(tmp_path: Path) -> None:
     command = ("-m", "benchmarks", "--quick", "--only", "roofline", "--json", file)
     finished = python(*command, directory=ROOT, CC="no-such-compiler")
     assert finished.returncode == 1
-    assert "roofline failed: the machine's peak cannot be measured: 'no-such-compiler'" in finished.stdout
+    assert "roofline failed" in finished.stdout
+    assert "'no-such-compiler'" in finished.stdout
     assert list(json.loads(file.read_text(encoding="utf-8"))["failed"]) == ["roofline"]

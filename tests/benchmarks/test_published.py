@@ -19,7 +19,7 @@ def rows() -> list[Row]:
 
 
 @pytest.mark.parametrize(
-    ("relation", "p", "direction", "said"),
+    ("relation", "p", "direction", "expected"),
     [
         (">", 0.01, 1, "agrees"),
         (">", 0.01, -1, "**disagrees**"),
@@ -28,24 +28,24 @@ def rows() -> list[Row]:
         ("=", 0.01, -1, "**disagrees**"),
     ],
 )
-def test_a_relation_holds_or_does_not_or_cannot_be_told(
-    relation: str, p: float, direction: int, said: str
+def test_a_verdict_agrees_or_disagrees_or_is_undecided(
+    relation: str, p: float, direction: int, expected: str
 ) -> None:
-    assert verdict(relation, p, direction) == said
+    assert verdict(relation, p, direction) == expected
 
 
 def test_every_published_relation_has_a_line(rows: list[Row]) -> None:
-    told = [line.split(" | ")[1] for line in [*rankings(rows)][2:]]
-    assert told == [text for published in WITHIN.values() for text in published] + list(OVERALL)
+    listed = [line.split(" | ")[1] for line in [*rankings(rows)][2:]]
+    assert listed == [text for published in WITHIN.values() for text in published] + list(OVERALL)
 
 
 def test_every_cell_has_a_line(rows: list[Row]) -> None:
-    told = [line.split(" | ")[:2] for line in [*cells(rows)][2:]]
-    assert len(told) == 20
-    assert ["| 10", "HM"] in told
+    listed = [line.split(" | ")[:2] for line in [*cells(rows)][2:]]
+    assert len(listed) == 20
+    assert ["| 10", "HM"] in listed
 
 
-def test_a_clear_difference_is_told_in_its_direction(rows: list[Row]) -> None:
+def test_a_clear_difference_agrees_in_its_direction(rows: list[Row]) -> None:
     every = groups_of(rows)
     better = [attrs.evolve(row, score=row.score + 1.0, fitness=row.fitness + 1.0) for row in every["WM(2)"]]
     groups = {"WM": better, "AM": every["AM(2)"], "GM": every["GM(2)"]}

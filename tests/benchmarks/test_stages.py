@@ -1,4 +1,4 @@
-"""The stages of a program are measured from outside."""
+"""The stages of a program are measured by wrappers around its methods."""
 
 import threading
 import time
@@ -9,7 +9,7 @@ from benchmarks.stages import Stages
 
 
 class Work:
-    """Burns CPU time."""
+    """A program that spends CPU time."""
 
     def outer(self) -> str:
         self.inner()
@@ -27,14 +27,14 @@ class Work:
 METHODS = [(Work, "outer", "outer"), (Work, "inner", "inner"), (Work, "fail", "failing")]
 
 
-def test_what_is_watched_works_as_before() -> None:
+def test_measured_methods_work_as_before() -> None:
     original = Work.outer
     with Stages().watch(METHODS):
         assert Work().outer() == "done"
     assert Work.outer is original
 
 
-def test_a_stage_within_another_counts_for_itself_alone() -> None:
+def test_the_time_of_a_stage_excludes_its_inner_stages() -> None:
     stages = Stages()
     with stages.watch(METHODS):
         Work().outer()
@@ -54,7 +54,7 @@ def test_threads_add_up() -> None:
     assert stages.cpu["inner"] >= 0.04
 
 
-def test_a_stage_that_fails_is_left() -> None:
+def test_a_stage_that_fails_ends() -> None:
     stages = Stages()
     with stages.watch(METHODS):
         with pytest.raises(ValueError):  # noqa: PT011 - the one that fail() raises
@@ -72,6 +72,6 @@ def test_a_stage_that_fails_is_left() -> None:
         ([(0.0, 5.0), (1.0, 2.0)], 5.0),
     ],
 )
-def test_what_goes_on_at_once_lasts_once(spans: list[tuple[float, float]], elapsed: float) -> None:
+def test_overlapping_spans_count_once(spans: list[tuple[float, float]], elapsed: float) -> None:
     assert Stages(spans={"a": spans}).elapsed("a") == elapsed
     assert Stages(spans={"a": spans}).elapsed("b") == 0.0

@@ -1,4 +1,4 @@
-"""What is compared takes turns."""
+"""Compared actions are interleaved."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from benchmarks.timing import QUICK, interleaved
 
 
 class Clock:
-    """A clock that only work moves on."""
+    """A clock that only work advances."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -17,7 +17,7 @@ class Clock:
         return self.now
 
     def work(self, name: str, times: list[float], done: list[str]) -> Callable[[], object]:
-        """Return work that takes so long each time, the last of them again and again."""
+        """Return an action that takes each of *times* once, in order, and then the last again and again."""
 
         def action() -> None:
             self.now += times.pop(0) if len(times) > 1 else times[0]
@@ -26,7 +26,7 @@ class Clock:
         return action
 
 
-def test_actions_take_turns_after_a_warm_up() -> None:
+def test_actions_are_interleaved_after_a_warm_up() -> None:
     clock, done = Clock(), list[str]()
     actions = {name: clock.work(name, [1.0], done) for name in "ab"}
     interleaved(actions, QUICK, clock)

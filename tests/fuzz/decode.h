@@ -1,7 +1,7 @@
-/* Bytes into arguments of libvox: mostly ones that really simulate something, now and then anything at all.
+/* Decodes bytes into arguments of libvox: mostly valid ones, sometimes arbitrary ones.
  *
- * One byte is one number for most of its values, so that short inputs reach far, and the rest of them stand for
- * numbers that nobody should give. An input that ends early goes on with zeros.
+ * Most values of a byte encode a valid number, so that short inputs reach far; the other values encode extreme or
+ * arbitrary numbers. An input that ends early is padded with zeros.
  */
 #ifndef DECODE_H
 #define DECODE_H
@@ -17,7 +17,7 @@
 
 enum { MOST_CELLS = 216, MOST_BODIES = 3, MOST_SAMPLES = 4, N_TRACKS = 7 };
 
-/* What is wrong with a call as a whole; one of them at a time. */
+/* Faults of a call as a whole; a call has at most one. */
 enum fault {
     NO_FAULT = 0,
     NO_SETTINGS,
@@ -85,7 +85,7 @@ static double next_raw(struct source *source)
     return number;
 }
 
-/* The lower end, a number up to the upper end, or something else altogether. */
+/* Returns the lower end, a number up to the upper end, or an arbitrary number. */
 static double next_number(struct source *source, double low, double high)
 {
     const uint8_t byte = next_byte(source);
@@ -95,7 +95,7 @@ static double next_number(struct source *source, double low, double high)
     return low + (high - low) * (byte - 16) / 237.0;
 }
 
-/* The same on a logarithmic scale. */
+/* Returns the same on a logarithmic scale. */
 static double next_scale(struct source *source, double low, double high)
 {
     const uint8_t byte = next_byte(source);
@@ -111,7 +111,7 @@ static int64_t next_count(struct source *source, int64_t low, int64_t high)
     return low + byte % (high - low + 1);
 }
 
-/* An allocation that the sanitizer guards at its very end; of no length too. */
+/* Allocates exactly the required size, also 0, so that the sanitizer detects any access beyond it. */
 static void *exactly(int64_t count, size_t size)
 {
     void *place = malloc((size_t)count * size);
@@ -134,7 +134,7 @@ static struct vox_material next_material(struct source *source)
     };
 }
 
-/* The codes are spread, so that some between them are not used. */
+/* Leaves gaps of unused codes in the palette. */
 static void next_palette(struct source *source, struct arguments *a)
 {
     const int64_t n_materials = 1 + next_byte(source) % 3, spread = 1 + next_byte(source) % 4;
@@ -144,7 +144,7 @@ static void next_palette(struct source *source, struct arguments *a)
     for (int64_t i = 1; i <= n_materials; i++) a->palette[i * spread] = next_material(source);
 }
 
-/* The number of cells, or 0 if no model may have so many. */
+/* Returns the number of cells, or 0 if it exceeds the limit of a model. */
 static int64_t cells_of(const struct vox_settings *s)
 {
     const int64_t sides[] = {s->nx, s->ny, s->nz};
@@ -164,7 +164,7 @@ static void next_canvas(struct source *source, struct vox_settings *s)
     s->voxel_size = next_scale(source, 1e-3, 1.0);
 }
 
-/* Durations are counted in time steps of the last material, so that there are some, and not too many. */
+/* Durations are multiples of the time step of the last material, so that the number of steps is positive but small. */
 static void next_times(struct source *source, const struct vox_material *material, struct vox_settings *s)
 {
     s->time_step_fraction = next_number(source, 0.05, 1.0);
@@ -211,7 +211,7 @@ static void next_limits(struct source *source, struct vox_settings *s)
     s->largest_distance = next_scale(source, 100.0, 0.01);
 }
 
-/* NULL, one end held, or a pattern of bits, which sometimes has bits that do not exist. */
+/* Returns NULL, a mask with one end fixed, or a pattern of bits, some of them invalid. */
 static uint8_t *next_fixed(struct source *source, const struct arguments *a)
 {
     const uint8_t kind = next_byte(source);
@@ -226,7 +226,7 @@ static uint8_t *next_fixed(struct source *source, const struct arguments *a)
 
 /* ---- the batch -------------------------------------------------------------------------------------------- */
 
-/* A pattern of materials and one of phases is laid over each body. */
+/* Repeats a pattern of materials and one of phases over each body. */
 static void next_body(struct source *source, const struct arguments *a, int64_t body)
 {
     uint8_t codes[11];
@@ -253,7 +253,7 @@ static void next_bodies(struct source *source, struct arguments *a)
     for (int64_t body = 0; body < a->n_bodies; body++) next_body(source, a, body);
 }
 
-/* Steps that ascend up to those that each body has; rarely they do not, or there are more. */
+/* Generates ascending steps up to the number of each body; rarely, they do not ascend or exceed it. */
 static void next_samples(struct source *source, struct arguments *a, const int64_t *steps)
 {
     const bool anything = next_byte(source) > 240;
@@ -261,16 +261,16 @@ static void next_samples(struct source *source, struct arguments *a, const int64
     for (int64_t body = 0; body < a->n_bodies; body++) {
         int64_t step = -1;
         for (int64_t i = 0; i < a->n_samples; i++) {
-            const int64_t last = steps[body] + 1 - a->n_samples + i; /* which leaves steps for the rest */
+            const int64_t last = steps[body] + 1 - a->n_samples + i; /* leaves steps for the other samples */
             const bool ascend = !anything && step >= -1 && step < last;
             const int64_t more = ascend ? 1 + next_byte(source) % (last - step) : next_count(source, 0, 40);
-            step = (int64_t)((uint64_t)step + (uint64_t)more); /* may well overflow */
+            step = (int64_t)((uint64_t)step + (uint64_t)more); /* may overflow */
             a->samples[body * a->n_samples + i] = step;
         }
     }
 }
 
-/* All but the samples, which depend on the model. */
+/* Decodes all arguments except the samples, which depend on the model. */
 static struct arguments next_arguments(struct source *source)
 {
     struct arguments a = {0};

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Fuzzes libvox's C interface (libFuzzer), and the readers of VXA files and of configurations (atheris), all of them
-# under the address and undefined-behaviour sanitizers: see docs/fuzzing.md. Everything it builds is in a directory
-# that it removes, unless something was found.
+# Fuzzes the C interface of libvox (libFuzzer), and the readers of VXA files and of configurations (atheris), all with
+# the address and undefined-behavior sanitizers: see docs/fuzzing.md. All files are built in a temporary directory,
+# which is removed at the end unless a target failed.
 #
-#   PYTHON=/path/to/python tests/fuzz/fuzz.sh SECONDS [vox|vxa|config ...]   look for faults, SECONDS for all of them
-#   PYTHON=/path/to/python tests/fuzz/fuzz.sh FILE vox|vxa|config            one input again
-#   PYTHON=/path/to/python tests/fuzz/fuzz.sh FOLDER [vox|vxa|config ...]    add what is new in FOLDER/TARGET to corpus/
+#   PYTHON=/path/to/python tests/fuzz/fuzz.sh SECONDS [vox|vxa|config ...]   fuzz the targets for SECONDS in all
+#   PYTHON=/path/to/python tests/fuzz/fuzz.sh FILE vox|vxa|config            repeat a single input
+#   PYTHON=/path/to/python tests/fuzz/fuzz.sh FOLDER [vox|vxa|config ...]    merge FOLDER/TARGET into corpus/
 #
-# SEED=0 chooses a seed by chance. CORPUS=FOLDER keeps the inputs that reach something new, in FOLDER/TARGET.
+# SEED=0 selects a random seed. CORPUS=FOLDER keeps the inputs that increase coverage, in FOLDER/TARGET.
 set -euo pipefail
 
 usage="usage: fuzz.sh SECONDS|FILE|FOLDER [vox|vxa|config ...]"
@@ -16,12 +16,12 @@ shift
 targets=("$@")
 [[ $# -gt 0 ]] || targets=(vox vxa config)
 for target in "${targets[@]}"; do
-    [[ $target =~ ^(vox|vxa|config)$ ]] || { echo "fuzz.sh: there is no target $target; $usage" >&2; exit 2; }
+    [[ $target =~ ^(vox|vxa|config)$ ]] || { echo "fuzz.sh: unknown target '$target'; $usage" >&2; exit 2; }
 done
 if [[ -e $given ]]; then
     given=$(realpath "$given")
 elif [[ ! $given =~ ^[1-9][0-9]{0,5}$ ]]; then
-    echo "fuzz.sh: $given is no number of seconds, no file and no folder; $usage" >&2
+    echo "fuzz.sh: '$given' is not a number of seconds (1 to 999999), a file or a folder; $usage" >&2
     exit 2
 fi
 
@@ -29,7 +29,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 python=${PYTHON:-python3}
 place=$(mktemp -d)
-found=$place/found # what makes a target fail
+found=$place/found # inputs that make a target fail
 mkdir "$found"
 trap 'rmdir "$found" 2>/dev/null && rm -rf "$place"' EXIT
 
@@ -55,27 +55,27 @@ find_clang() {
 
 install_clang() {
     [[ -z ${CLANG:-} && $(id -u) == 0 ]] && command -v apt-get >/dev/null || return 1
-    echo "fuzz.sh: no clang with libFuzzer is here; apt-get installs one" >&2
+    echo "fuzz.sh: clang with libFuzzer is not installed; installing it with apt-get" >&2
     export DEBIAN_FRONTEND=noninteractive
     {
         apt-get update
         apt-get install --yes --no-install-recommends clang libclang-rt-dev ||
-            apt-get install --yes --no-install-recommends clang # older releases have all in one package
+            apt-get install --yes --no-install-recommends clang # older releases have a single package
     } &>"$place/apt.log" || { tail -n 5 "$place/apt.log" >&2; return 1; }
 }
 
 if ! find_clang && ! { install_clang && find_clang; }; then
-    echo "fuzz.sh: ${CLANG:-clang} with libFuzzer and the sanitizers is needed and is not here; install it (Debian and" \
-        "Ubuntu: apt-get install clang libclang-rt-dev), or set CLANG to one" >&2
+    echo "fuzz.sh: ${CLANG:-clang} with libFuzzer and the sanitizers is required and not installed; install it" \
+        "(Debian and Ubuntu: apt-get install clang libclang-rt-dev), or set CLANG to its path" >&2
     exit 1
 fi
 if ! "$python" -c 'import atheris' 2>"$place/atheris.log"; then
     tail -n 1 "$place/atheris.log" >&2
-    echo "fuzz.sh: atheris is needed and is not there for $python; install it: pip install 'atheris>=3,<4'" >&2
+    echo "fuzz.sh: $python has no atheris; install it with: $python -m pip install 'atheris>=3,<4'" >&2
     exit 1
 fi
 
-# ---- what is built -------------------------------------------------------------------------------------------------
+# ---- building ------------------------------------------------------------------------------------------------------
 
 sanitizers=(-fsanitize=address,undefined -fno-sanitize-recover=all)
 
@@ -92,9 +92,9 @@ build_vox() {
         "$place"/vox/*.o -o "$place/fuzz_vox" -lm
 }
 
-# The interpreter was built without the sanitizer, so its runtime has to be there first. It must not bring its own
-# collector of coverage, since atheris has libFuzzer's: it is linked again without that. atheris throws exceptions of
-# C++, which the runtime must find before.
+# The interpreter was built without the sanitizer, so the sanitizer's runtime must be loaded first. It is linked again
+# without its own coverage collector, since atheris includes that of libFuzzer, and with libstdc++, since atheris
+# throws C++ exceptions.
 build_runtime() {
     local archive name
     for name in "libclang_rt.asan-$(uname -m).a" libclang_rt.asan.a; do
@@ -119,7 +119,7 @@ runpy.run_path(sys.argv[1] + "/extensions.py")["libvox"].compile(tmpdir=sys.argv
 
 # ---- running -------------------------------------------------------------------------------------------------------
 
-# A target with libFuzzer's options.
+# Runs a target with options of libFuzzer.
 start() {
     local target=$1
     shift
@@ -128,7 +128,7 @@ start() {
         "$place/fuzz_vox" "${options[@]}" -max_len=256 "$@"
         return
     fi
-    # Python itself leaks. A few frames of where something was allocated are enough; each allocation costs them.
+    # Python itself leaks, so leaks are not detected. Every allocation stores a stack, so stacks are short.
     TMPDIR=$place PYTHONPATH=$place PYTHONDONTWRITEBYTECODE=1 LD_PRELOAD=$place/asan.so \
         ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=32:malloc_context_size=8 UBSAN_OPTIONS=print_stacktrace=1 \
         "$python" "$here/fuzz_$target.py" "${options[@]}" -max_len=20000 -dict="$here/$target.dict" "$@"
@@ -145,17 +145,17 @@ hunt() {
     tail -n 100 "$log" >&2
     cp "$log" "$found/$target.log"
     echo "fuzz.sh: $target failed: $(ls -d "$found/$target"* | tr '\n' ' ')" >&2
-    echo "fuzz.sh: once more: PYTHON=$python $here/fuzz.sh FILE $target" >&2
+    echo "fuzz.sh: to repeat an input: PYTHON=$python $here/fuzz.sh FILE $target" >&2
     return 1
 }
 
-# The smallest inputs that together reach every branch that those in the folder and in the corpus reach.
+# Reduces the corpus to the smallest inputs that cover every branch covered by the folder and the corpus.
 merge() {
     local target=$1 from=$2 corpus=$here/corpus/$target
     mkdir "$place/merged"
     start "$target" -set_cover_merge=1 -use_counters=0 "$place/merged" "$corpus" "$from/$target" &>"$place/merge.log" ||
         { tail -n 20 "$place/merge.log" >&2; return 1; }
-    [[ -n $(ls "$place/merged") ]] || { echo "fuzz.sh: nothing was merged; the corpus stays as it is" >&2; return 1; }
+    [[ -n $(ls "$place/merged") ]] || { echo "fuzz.sh: no inputs were merged; the corpus is unchanged" >&2; return 1; }
     rm -rf "$corpus"
     mv "$place/merged" "$corpus"
     echo "$target: $(find "$corpus" -type f | wc -l) inputs, $(cat "$corpus"/* | wc -c) bytes"

@@ -1,7 +1,7 @@
-"""atheris on the configuration reader: see docs/fuzzing.md.
+"""Fuzz target of atheris for the reader of configurations: see docs/fuzzing.md.
 
-An input is the text of a TOML file, and after each byte 0 what is given to one ``--set``. Either the reader
-refuses it with a ``ConfigurationError``, or it is a configuration that survives being written and read again.
+An input is the text of a TOML file, followed by the value of a ``--set`` after each byte 0. The reader must
+refuse it with a ``ConfigurationError``, or return a configuration that is equal after writing and reading it.
 """
 
 from __future__ import annotations
@@ -30,22 +30,22 @@ VALUES = (
     *("{}", '{name = "vox"}', "{a.b = 1}", "[" * 200 + "]" * 200, "[" * 3000),
     *("1979-05-27", "07:32:00", "1979-05-27T07:32:00Z"),
 )
-"""One of each kind of TOML value, and the edges of each kind."""
+"""Values of each kind of TOML value, including edge cases."""
 
 
 WORDS = (
     *("morphology", "controller", "third", "turn", "score", "Role", "encoder", "evolver"),
     *("name", "extends", "x.y", ".".join("z" * 600)),
 )
-"""What may stand in the place of a key, or of a population."""
+"""Replacements for keys and names of populations."""
 
 
-def refused(source: Path, overrides: list[str]) -> evoframe.RunConfig | None:
+def load_unless_refused(source: Path, overrides: list[str]) -> evoframe.RunConfig | None:
     try:
         return evoframe.load_config(source, overrides=overrides, plugins=PLUGINS)
     except evoframe.ConfigurationError as error:
         if not str(error).strip():
-            raise RuntimeError("an error without words") from error
+            raise RuntimeError("an error without text") from error
         return None
 
 
@@ -53,18 +53,18 @@ def test_one_input(data: bytes) -> None:
     text, *overrides = data.split(b"\0")
     path = Path("fuzzed.toml")
     path.write_bytes(text)
-    config = refused(path, [os.fsdecode(override) for override in overrides])
+    config = load_unless_refused(path, [os.fsdecode(override) for override in overrides])
     if config is None:
         return
     again = Path("again.toml")
     again.write_text(config.to_toml(), encoding="utf-8")
     if evoframe.load_config(again, plugins=PLUGINS).tables() != config.tables():
-        raise RuntimeError("another configuration came back")
+        raise RuntimeError("the configuration differs after writing and reading it")
 
 
 @functools.cache
 def known_keys() -> list[tuple[str, ...]]:
-    """Return every key of the preset ``paper``, with its tables."""
+    """Return the path of every key of the preset ``paper``."""
 
     def below(tree: dict[str, Any], path: tuple[str, ...]) -> list[tuple[str, ...]]:
         found = []
@@ -78,7 +78,7 @@ def known_keys() -> list[tuple[str, ...]]:
 
 
 def mutated(data: bytes, max_size: int, seed: int) -> bytes:
-    """Put a known key with any value somewhere, or do what libFuzzer does."""
+    """Return *data* with a known key and any value inserted, or mutated by libFuzzer."""
     draw = random.Random(seed)  # noqa: S311 - no secret depends on it
     if draw.random() < 0.5:
         return atheris.Mutate(data, max_size)
@@ -99,9 +99,9 @@ def mutated(data: bytes, max_size: int, seed: int) -> bytes:
 
 def main() -> None:
     script, *given = [part if part.startswith("-") else str(Path(part).resolve()) for part in sys.argv]
-    program = f"{sys.executable} {script}"  # which libFuzzer starts again when it merges
+    program = f"{sys.executable} {script}"  # libFuzzer restarts it to merge
     atheris.Setup([program, *given], test_one_input, custom_mutator=mutated)
-    warnings.simplefilter("error")  # nobody who gives a file should see one
+    warnings.simplefilter("error")  # no file may cause a warning
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         atheris.Fuzz()

@@ -1,11 +1,11 @@
-/* libFuzzer on the C interface of libvox: see docs/fuzzing.md.
+/* Fuzz target of libFuzzer for the C interface of libvox: see docs/fuzzing.md.
  *
- * The sanitizers see every read and write out of place. What they cannot see is checked here, and ends the program:
- * statuses and culprits within their ranges, buffers untouched by a call that was refused, samples that are finite up
- * to a divergence and NaN after it, held voxels that stay, and a body whose results do not depend on the rest of the
+ * The sanitizers detect reads and writes out of bounds. The checks here abort the program if another guarantee fails:
+ * statuses and culprits are within their ranges, a refused call leaves buffers unchanged, samples are finite up to a
+ * divergence and NaN after it, fixed voxels do not move, and the results of a body do not depend on the rest of the
  * batch.
  *
- * The solver is compiled with these allocators, so that any of its allocations can be made to fail.
+ * The solver is compiled with these allocators, so that any of its allocations can fail on demand.
  */
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ enum { CANARY = 0x5a };
 
 static const double MOST_WORK = 5000.0; /* voxels times steps */
 
-static const int64_t WIDTHS[N_TRACKS] = {3, 3, 3, 0, 2, 2, 6}; /* doubles a sample; 0: three for each cell */
+static const int64_t WIDTHS[N_TRACKS] = {3, 3, 3, 0, 2, 2, 6}; /* doubles per sample; 0: three for each cell */
 enum track { TIP, FACE, BODY, VOXELS, ENERGY, STRAIN, MOMENTUM };
 
 /* ---- allocations ------------------------------------------------------------------------------------------ */
@@ -46,7 +46,7 @@ void *fuzz_calloc(size_t count, size_t size)
 
 #define CHECK(condition) check((condition), #condition, __LINE__)
 
-/* For a person who looks at a failure. */
+/* Context of a check, printed if it fails. */
 static const struct arguments *at_hand;
 static struct place {
     unsigned track;
@@ -87,7 +87,7 @@ static void explain(const struct arguments *a)
 static void check(bool fine, const char *condition, int line)
 {
     if (fine) return;
-    fprintf(stderr, "fuzz_vox.c:%d: libvox broke its promise: %s\n", line, condition);
+    fprintf(stderr, "fuzz_vox.c:%d: a check of libvox failed: %s\n", line, condition);
     explain(at_hand);
     abort();
 }
@@ -126,7 +126,7 @@ static void check_status(enum vox_status status, int64_t culprit, const struct a
 
 /* ---- calls ------------------------------------------------------------------------------------------------ */
 
-/* NULL if the arguments were refused. */
+/* Returns NULL if the arguments were refused. */
 static vox_model *make(const struct arguments *a)
 {
     vox_model *model = NULL;
@@ -150,7 +150,7 @@ static vox_model *make(const struct arguments *a)
     return model;
 }
 
-/* False if a body was refused; its steps are then not known. */
+/* Returns false if a body was refused; the steps are then unknown. */
 static bool count_steps(const vox_model *model, const struct arguments *a, double *dt, int64_t *steps)
 {
     int64_t culprit = -2;
@@ -171,7 +171,7 @@ static int64_t width_of(enum track track, const struct arguments *a)
     return track == VOXELS ? 3 * a->cells : WIDTHS[track];
 }
 
-/* What a call writes. */
+/* Outputs of a call. */
 struct outcome {
     double *tracks[N_TRACKS]; /* NULL if not wanted */
     int64_t *diverged;
@@ -234,13 +234,13 @@ static struct outcome simulate(const vox_model *model, const struct arguments *a
     return out;
 }
 
-/* Numbers of bodies or samples for which no array could be long enough. */
+/* Calls the solver with a number of bodies or samples that exceeds any array. */
 static void call_with_absurd_numbers(const vox_model *model, const struct arguments *a)
 {
     const int64_t numbers[] = {-1, INT64_MIN, INT64_MAX, INT64_C(1) << 61};
     const int64_t absurd = PICK(numbers, a->wanted);
     const bool bodies = a->fault == ABSURD_BODIES;
-    if (!bodies && a->n_bodies == 0 && absurd > 0) return; /* no bodies have any number of samples */
+    if (!bodies && a->n_bodies == 0 && absurd > 0) return; /* without bodies, any number of samples is valid */
     struct outcome out = outcome_create(a, ~0u);
     const struct vox_tracks tracks = {out.tracks[TIP],    out.tracks[FACE],   out.tracks[BODY],    out.tracks[VOXELS],
                                       out.tracks[ENERGY], out.tracks[STRAIN], out.tracks[MOMENTUM]};
@@ -253,9 +253,9 @@ static void call_with_absurd_numbers(const vox_model *model, const struct argume
     outcome_destroy(&out);
 }
 
-/* ---- what is promised ------------------------------------------------------------------------------------- */
+/* ---- guarantees ------------------------------------------------------------------------------------------- */
 
-/* The voxels of one body at one time. */
+/* Checks the voxels of one body at one time. */
 static void check_voxels(const struct arguments *a, int64_t body, const double *positions)
 {
     const double edge = a->settings.voxel_size;
@@ -299,7 +299,7 @@ static void check_outcome(const struct arguments *a, const struct outcome *out, 
     }
 }
 
-/* One body's part of a batch; its arrays are copies of exactly their size. */
+/* Returns the part of a batch that belongs to one body, as copies of exactly the required size. */
 static struct arguments alone(const struct arguments *a, int64_t body, int64_t n_samples)
 {
     struct arguments one = *a;
@@ -321,7 +321,7 @@ static void alone_destroy(struct arguments *one)
     free(one->samples);
 }
 
-/* Alone and with every track, a body does the same as in its batch. */
+/* Checks that a body simulated alone with all tracks has the same results as in its batch. */
 static void check_alone(const vox_model *model, const struct arguments *a, const struct outcome *all, int64_t body,
                         const int64_t *steps)
 {
@@ -338,7 +338,7 @@ static void check_alone(const vox_model *model, const struct arguments *a, const
     alone_destroy(&one);
 }
 
-/* Nor does it matter what is looked at. */
+/* Checks that results do not depend on the recorded tracks. */
 static void check_unseen(const vox_model *model, const struct arguments *a, const struct outcome *all, int64_t body)
 {
     struct arguments one = alone(a, body, 0);
@@ -349,7 +349,7 @@ static void check_unseen(const vox_model *model, const struct arguments *a, cons
     alone_destroy(&one);
 }
 
-/* A body that is named as the reason is refused alone too, for the same reason. */
+/* Checks that the culprit of a batch is refused alone too, for the same reason. */
 static void check_culprit(const vox_model *model, const struct arguments *a, const struct outcome *all)
 {
     struct arguments one = alone(a, all->culprit, a->n_samples);
@@ -395,7 +395,7 @@ static double work_of(const struct arguments *a, const int64_t *steps)
     return work;
 }
 
-/* A model and the steps of its bodies. Where they are too many, the model is made again for a shorter time. */
+/* Creates a model and counts the steps of its bodies; if there are too many, shortens the duration and retries. */
 static vox_model *make_affordable(struct arguments *a, double *dt, int64_t *steps, bool *known)
 {
     *known = false;

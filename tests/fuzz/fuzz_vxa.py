@@ -1,7 +1,7 @@
-"""atheris on the reader of VXA files: see docs/fuzzing.md.
+"""Fuzz target of atheris for the reader of VXA files: see docs/fuzzing.md.
 
-A file is refused with an ``InputError`` or a ``ConfigurationError``, or it is a body that can be simulated,
-and exported to a file from which the same body with the same settings is read again.
+The reader must refuse a file with an ``InputError`` or a ``ConfigurationError``, or return a body that can be
+simulated, and exported to a file with the same body and settings.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ TEXTS = (
     *("0,0", "0,0,0,0", "0,0.25,", "nan,0,0,0", "&amp;", "&#49;", "&#0;", "&x;"),
     *("<![CDATA[1]]>", "<a/>", "<!--1-->1"),
 )
-"""What stands in elements: flags, counts, numbers, layers, and what is none of these."""
+"""Texts of elements: flags, counts, numbers, layers, and invalid ones."""
 
 
 def names_in(schema: Mapping[str, Any]) -> Iterator[str]:
@@ -57,7 +57,7 @@ def loaded(path: Path) -> tuple[Vox, evoframe.Design]:
     """Return the simulator and the body of a file, as ``evoframe simulate`` does."""
     options = Vox.settings_of(path)
     if options is None:
-        raise RuntimeError("a VXA file brings settings with it")
+        raise RuntimeError("expected settings from a VXA file, found none")
     layer = evoframe.Layer(str(path), {"simulator": {"name": "vox", **options}})
     vox = evoframe.load_config("quick", overrides=[layer], plugins=PLUGINS).simulator.component
     if not isinstance(vox, Vox):
@@ -87,13 +87,13 @@ def simulate(vox: Vox, design: evoframe.Design) -> None:
 
 
 def as_written(vox: Vox) -> dict[str, Any]:
-    """Return the settings as a file has them: a period in single precision, a name for each material."""
+    """Return the settings in the precision of a file: a single-precision period, a name for each material."""
     palette = [attrs.evolve(given, name=given.name or f"material {given.code}") for given in vox.palette]
     return {**attrs.asdict(vox), "palette": palette, "frequency": np.float32(1 / vox.frequency)}
 
 
 def export(vox: Vox, design: evoframe.Design) -> None:
-    """Write a body, and read it again."""
+    """Write a body, read it, and compare."""
     try:
         exported = vox.export(design, "vxa")
     except REFUSED:
@@ -102,13 +102,13 @@ def export(vox: Vox, design: evoframe.Design) -> None:
     path.write_bytes(exported.data)
     again, same = loaded(path)
     if not exported.left_out and as_written(again) != as_written(vox):
-        raise RuntimeError(f"other settings came back:\n{vox}\n{again}")
+        raise RuntimeError(f"settings differ after export:\n{vox}\n{again}")
     for role, array in design.roles.items():
         if not np.array_equal(array, same.roles[role]) and role != evoframe.CONTROLLER:
-            raise RuntimeError(f"another {role} came back")
+            raise RuntimeError(f"{role} differs after export")
     record = evoframe.Record(tracks=("tip",))
     if vox.key(design, record) != again.key(same, record):
-        raise RuntimeError("other offsets came back")
+        raise RuntimeError("offsets differ after export")
 
 
 def test_one_input(data: bytes) -> None:
@@ -118,7 +118,7 @@ def test_one_input(data: bytes) -> None:
         vox, design = loaded(path)
     except REFUSED as error:
         if path.name not in str(error):
-            raise RuntimeError("an error that does not name the file") from error
+            raise RuntimeError("the error does not name the file") from error
         return
     simulate(vox, design)
     export(vox, design)
@@ -128,15 +128,15 @@ def replaced(data: bytes, found: re.Match[bytes], text: bytes) -> bytes:
     return data[: found.start()] + text + data[found.end() :]
 
 
-def other_text(data: bytes, draw: random.Random) -> bytes:
-    """Put something else into an element."""
+def replace_text(data: bytes, draw: random.Random) -> bytes:
+    """Replace the text of an element."""
     found = draw.choice(list(LEAF.finditer(data)))
     text = draw.choice(TEXTS).encode()
     return data[: found.start(2)] + text + data[found.end(2) :]
 
 
-def other_block(data: bytes, draw: random.Random) -> bytes:
-    """Take out a block of elements, or put it somewhere too."""
+def move_block(data: bytes, draw: random.Random) -> bytes:
+    """Remove, move or copy a block of elements."""
     found = draw.choice(list(BLOCK.finditer(data, draw.randrange(len(data)))) or list(BLOCK.finditer(data)))
     rest = replaced(data, found, b"") if draw.random() < 0.5 else data
     if draw.random() < 0.4:
@@ -145,31 +145,31 @@ def other_block(data: bytes, draw: random.Random) -> bytes:
     return rest[:at] + found[0] + rest[at:]
 
 
-def other_tag(data: bytes, draw: random.Random) -> bytes:
-    """Give an element the name of another."""
+def replace_tag(data: bytes, draw: random.Random) -> bytes:
+    """Replace the tag of an element."""
     found = draw.choice(list(LEAF.finditer(data)))
     tag = draw.choice(TAGS).encode()
     return replaced(data, found, b"<%b>%b</%b>" % (tag, found[2], tag))
 
 
-def another_tag(data: bytes, draw: random.Random) -> bytes:
-    """Put an element beside one."""
+def insert_element(data: bytes, draw: random.Random) -> bytes:
+    """Insert an element after another."""
     found = draw.choice(list(LEAF.finditer(data)))
     tag, text = draw.choice(TAGS).encode(), draw.choice(TEXTS).encode()
     return replaced(data, found, b"%b<%b>%b</%b>" % (found[0], tag, text, tag))
 
 
 MUTATIONS: tuple[Callable[[bytes, random.Random], bytes], ...] = (
-    other_text,
-    other_text,
-    other_block,
-    other_tag,
-    another_tag,
+    replace_text,
+    replace_text,
+    move_block,
+    replace_tag,
+    insert_element,
 )
 
 
 def mutated(data: bytes, max_size: int, seed: int) -> bytes:
-    """Change elements as a whole, or do what libFuzzer does."""
+    """Return *data* with whole elements changed, or mutated by libFuzzer."""
     draw = random.Random(seed)  # noqa: S311 - no secret depends on it
     if draw.random() < 0.3 or not LEAF.search(data):
         return atheris.Mutate(data, max_size)
@@ -181,10 +181,10 @@ def mutated(data: bytes, max_size: int, seed: int) -> bytes:
 
 def main() -> None:
     script, *given = [part if part.startswith("-") else str(Path(part).resolve()) for part in sys.argv]
-    program = f"{sys.executable} {script}"  # which libFuzzer starts again when it merges
+    program = f"{sys.executable} {script}"  # libFuzzer restarts it to merge
     atheris.Setup([program, *given], test_one_input, custom_mutator=mutated)
     document._MOST_BYTES, document._MOST_ELEMENTS = 2**14, 2**9  # so that some files are too large
-    warnings.simplefilter("error")  # nobody who gives a file should see one
+    warnings.simplefilter("error")  # no file may cause a warning
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         atheris.Fuzz()

@@ -1,4 +1,4 @@
-"""Runs of toys whose champions can be measured."""
+"""Runs of toys whose champions have a measurable robustness."""
 
 from __future__ import annotations
 

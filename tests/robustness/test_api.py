@@ -24,10 +24,10 @@ class TestFromPython:
         assert (louder.scores == 2 * found.scores).all()
 
     @pytest.mark.parametrize(("controllers", "seed"), [(0, 1), (1, -1)])
-    def test_what_cannot_be_drawn_is_refused(
+    def test_numbers_out_of_range_are_refused(
         self, toy_plugins: Plugins, two_runs: list[str], controllers: int, seed: int
     ) -> None:
-        with pytest.raises(ConfigurationError, match=r"^expected 1 or more controllers and a seed from 0 up"):
+        with pytest.raises(ConfigurationError, match=f"found {controllers} and {seed}"):
             measure_robustness("run-1", plugins=toy_plugins, controllers=controllers, seed=seed)
 
 
@@ -36,7 +36,7 @@ def candidates(toy_plugins: Plugins, two_runs: list[str]) -> Candidates:
     return read_candidates([Path(name) for name in two_runs], None, [], toy_plugins, published=True)
 
 
-def test_a_setting_says_what_will_be_measured_before_it_is(candidates: Candidates) -> None:
+def test_a_setting_describes_a_measurement_in_advance(candidates: Candidates) -> None:
     setting = setting_of(candidates, 3, 7)
     assert (setting.seed, setting.controllers, setting.unit) == (3, 7, "")
     assert [body.label for body in setting.bodies] == ["run-1", "run-2", "one", "two"]
@@ -44,7 +44,7 @@ def test_a_setting_says_what_will_be_measured_before_it_is(candidates: Candidate
     assert measure(candidates, setting).setting == setting
 
 
-def test_a_measurement_is_the_same_each_time_and_its_workers_are_let_go(candidates: Candidates) -> None:
+def test_a_measurement_is_repeatable_and_shuts_down_its_workers(candidates: Candidates) -> None:
     before = len(toys.CLOSED)
     setting = setting_of(candidates, 3, 7)
     first, second = measure(candidates, setting), measure(candidates, setting)
@@ -61,7 +61,7 @@ class TestMeasurable:
         assert [each.digest for each in found] == [body.digest for body in bodies[:2]]
         assert found[0].simulation == candidates.config.simulation()
 
-    def test_is_nothing_whose_simulator_draws_no_controllers(
+    def test_skips_simulators_that_do_not_draw_controllers(
         self, here: Path, toy_plugins: Plugins, toy_config: Callable[..., RunConfig]
     ) -> None:
         run(toy_config(), out="plain")

@@ -14,10 +14,10 @@ from processes import python
 
 from evoframe import InputError, plan_study, run_study
 from evoframe.study.api import StudyResult
-from evoframe.study.conduct import Watcher
+from evoframe.study.conduct import STUDY_FILE, Watcher
 from evoframe.study.plan import Planned, Study
 from evoframe.study.pool import End
-from evoframe.study.progress import FAILURE_FILE
+from evoframe.study.progress import FAILURE_FILE, REMEDY
 from evoframe.study.rows import Row, read_rows
 
 Read = Callable[..., Study]
@@ -27,7 +27,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "studies.md"
 
 @attrs.define
 class Notes(Watcher):
-    """Notes what a watcher receives."""
+    """A watcher that records what it receives."""
 
     done: int = 0
     ends: list[End] = attrs.field(factory=list)
@@ -59,7 +59,7 @@ def run(few: Study, tmp_path: Path) -> Callable[..., StudyResult]:
     return run_it
 
 
-def test_what_is_missing_is_run_and_what_is_there_is_returned(
+def test_missing_runs_are_executed_and_finished_runs_are_returned(
     run: Callable[..., StudyResult], few: Study, tmp_path: Path
 ) -> None:
     notes = Notes()
@@ -76,7 +76,7 @@ def test_what_is_missing_is_run_and_what_is_there_is_returned(
     assert (again.done, again.started) == (2, [])
 
 
-def test_a_run_that_fails_is_reported_and_the_others_go_on(
+def test_a_run_that_fails_is_reported_and_stops_no_other(
     run: Callable[..., StudyResult], toy_study: Read, tmp_path: Path
 ) -> None:
     sound = tmp_path / "sound"
@@ -87,19 +87,21 @@ def test_a_run_that_fails_is_reported_and_the_others_go_on(
     assert "ZeroDivisionError: not sound" in cause
     assert made.left == [failed]
     assert len(made.rows) == 1
-    assert run(study).failed == made.failed  # not tried again
+    assert run(study).failed == made.failed  # not repeated
     sound.touch()
     retried = run(study, retry=True)
     assert (retried.failed, len(retried.rows)) == ({}, 2)
 
 
-def test_a_failure_shows_the_hint_that_its_error_has(run: Callable[..., StudyResult], few: Study) -> None:
+def test_a_failure_shows_the_hint_of_its_error(run: Callable[..., StudyResult], few: Study) -> None:
     first, _ = few.planned(run(stop=lambda: True).directory)
     first.directory.mkdir(parents=True)
     (first.directory / "letter").touch()
-    assert run().failed == {
-        first: f"{first.directory}: is not empty\n  a run whose directory is removed is made again"
-    }
+    [(failed, cause)] = run().failed.items()
+    assert failed == first
+    error, hint = cause.splitlines()
+    assert error.startswith(f"{first.directory}: ")
+    assert hint == f"  {REMEDY}"
 
 
 def test_a_stop_leaves_the_rest_for_the_next_time(run: Callable[..., StudyResult]) -> None:
@@ -112,7 +114,7 @@ def test_a_stop_leaves_the_rest_for_the_next_time(run: Callable[..., StudyResult
 
 
 @pytest.mark.parametrize("asked", [False, True])
-def test_an_interrupt_writes_the_rows_and_is_raised_unless_a_stop_is_asked_for(
+def test_an_interrupt_writes_the_rows_and_is_raised_unless_a_stop_is_requested(
     run: Callable[..., StudyResult], tmp_path: Path, asked: bool
 ) -> None:
     class Impatient(Notes):
@@ -146,31 +148,34 @@ def test_rows_of_another_session_count_as_finished(run: Callable[..., StudyResul
 def test_the_directory_of_something_else_is_refused(run: Callable[..., StudyResult], tmp_path: Path) -> None:
     (tmp_path / "letters").mkdir()
     (tmp_path / "letters" / "letter").touch()
-    with pytest.raises(InputError, match="is not empty, and not the directory of a study"):
+    with pytest.raises(InputError, match="not empty") as caught:
         run(out=tmp_path / "letters")
+    assert caught.value.source == str(tmp_path / "letters")
+    assert STUDY_FILE in caught.value.problem
 
 
-def test_a_study_that_was_read_is_complete(few: Study) -> None:
-    with pytest.raises(TypeError, match="a study is complete; give settings to read_study"):
+def test_a_study_that_was_read_takes_no_settings(few: Study) -> None:
+    with pytest.raises(TypeError, match="read_study"):
         run_study(few, runs=3)
 
 
 class TestPlan:
-    def test_says_what_would_be_run_and_writes_nothing(
+    def test_lists_the_runs_to_execute_and_writes_nothing(
         self, run: Callable[..., StudyResult], few: Study, toy_study: Read, tmp_path: Path
     ) -> None:
         planned = plan_study(few, out=tmp_path / "there")
         assert len(planned.to_run) == 2
-        assert planned.estimate.measured == "the first turn of one run"
+        assert planned.estimate.bound == "at most"
         assert not (tmp_path / "there").exists()
         run()
         before = {path: path.stat().st_mtime_ns for path in (tmp_path / "there").rglob("*")}
         more = plan_study(toy_study("runs=2", "grid.collaboration.n=[1]"), out=tmp_path / "there", workers=1)
         assert (len(more.found.rows), len(more.to_run), more.cores) == (2, 2, 1)
-        assert more.estimate.measured == "2 finished runs"
+        assert more.estimate.measured.startswith("2 ")
+        assert more.estimate.bound == "about"
         assert {path: path.stat().st_mtime_ns for path in (tmp_path / "there").rglob("*")} == before
 
-    def test_counts_what_failed_on_demand(
+    def test_counts_failed_runs_on_request(
         self, run: Callable[..., StudyResult], few: Study, tmp_path: Path
     ) -> None:
         failed, _ = few.planned(run(stop=lambda: True).directory)
@@ -185,6 +190,11 @@ class TestPlan:
         assert planned.found.directory == Path("studies/small")
         assert len(planned.to_run) == 4
         assert planned.to_run[0].cell.config.run.generations == 3
+
+    def test_takes_a_whole_grid_in_place_of_that_of_the_study(self) -> None:
+        planned = plan_study("small", runs=2, grid={"aggregator": ["hm"]})
+        assert planned.found.study.grid == {"aggregator": ("hm",)}
+        assert len(planned.to_run) == 2
 
 
 def test_the_python_of_the_page_on_studies_runs(tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
-"""The directory of a study, which several processes share."""
+"""The directory of a study, shared by several processes."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from pathlib import Path
@@ -18,13 +19,13 @@ from evoframe.study.conduct import STUDY_FILE, Watcher, claim, execute, lock_tab
 from evoframe.study.gathered import gather
 from evoframe.study.plan import Planned, Study
 from evoframe.study.pool import End, News, Pool
-from evoframe.study.progress import REMEDY, Status, note_failure, status_of
+from evoframe.study.progress import REMEDY, Status, record_failure, status_of
 from evoframe.study.worker import Order
 
 Read = Callable[..., Study]
 
 
-def test_what_another_process_leaves_before_it_has_claimed_a_directory_is_no_obstacle(
+def test_leftovers_of_another_process_that_is_claiming_the_directory_are_ignored(
     toy_study: Read, tmp_path: Path
 ) -> None:
     there = tmp_path / "there"
@@ -36,7 +37,7 @@ def test_what_another_process_leaves_before_it_has_claimed_a_directory_is_no_obs
     assert (there / STUDY_FILE).is_file()
 
 
-def test_a_directory_that_is_claimed_while_one_looks_is_that_of_the_study(
+def test_a_directory_claimed_during_the_check_belongs_to_the_study(
     toy_study: Read, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study, there = toy_study(), tmp_path / "there"
@@ -53,38 +54,44 @@ def test_a_directory_that_is_claimed_while_one_looks_is_that_of_the_study(
     refuse_another(study, there)
 
 
-def test_what_is_somebody_elses_stays_as_it_is(toy_study: Read, tmp_path: Path) -> None:
+def test_the_directory_of_something_else_stays_unchanged(toy_study: Read, tmp_path: Path) -> None:
     (tmp_path / "there").mkdir()
     (tmp_path / "there" / "letter").touch()
-    with pytest.raises(InputError, match="is not empty, and not the directory of a study"):
+    with pytest.raises(InputError, match="not empty") as caught:
         claim(toy_study(), tmp_path / "there")
+    assert caught.value.source == str(tmp_path / "there")
+    assert STUDY_FILE in caught.value.problem
     assert [path.name for path in (tmp_path / "there").iterdir()] == ["letter"]
 
 
 @pytest.mark.parametrize(
     ("fewer", "lines"),
     [
-        (("runs=1",), ["runs: 3 there, 1 now"]),
-        (("grid.collaboration.n=[2]",), ["grid.collaboration.n: 1 there, not now"]),
-        (("runs=2", "grid.simulator=['toy-product']"), ["runs: 3 there, 2 now", "grid.simulator: {"]),
+        (("runs=1",), [("runs: ", "3", "1")]),
+        (("grid.collaboration.n=[2]",), [("grid.collaboration.n: ", "1")]),
+        (("runs=2", "grid.simulator=['toy-product']"), [("runs: ", "3", "2"), ("grid.simulator: {",)]),
     ],
 )
 def test_a_study_is_not_made_smaller(
-    toy_study: Read, tmp_path: Path, fewer: tuple[str, ...], lines: list[str]
+    toy_study: Read, tmp_path: Path, fewer: tuple[str, ...], lines: list[tuple[str, ...]]
 ) -> None:
     there = tmp_path / "there"
     claim(toy_study(), there)
     before = (there / STUDY_FILE).read_bytes()
-    with pytest.raises(InputError, match=r"study\.toml: has more than what is asked for") as caught:
+    with pytest.raises(InputError) as caught:
         claim(toy_study(*fewer), there)
-    for told, line in zip(str(caught.value).splitlines()[1:], lines, strict=True):
-        assert told.strip().startswith(line)
+    assert caught.value.source == str(there / STUDY_FILE)
+    first, *listed = caught.value.problem.splitlines()
+    assert "--out" in first
+    for line, (start, *numbers) in zip(listed, lines, strict=True):
+        assert line.strip().startswith(start)
+        assert re.findall(r"\d+", line)[: len(numbers)] == numbers
     assert (there / STUDY_FILE).read_bytes() == before
     claim(toy_study("runs=4", "grid.collaboration.n=[1, 2, 3]"), there)
 
 
 class Workers(Pool):
-    """In place of a pool: each run ends as soon as it is asked how the study goes on."""
+    """A replacement for a pool whose runs end in pairs, as soon as both have started."""
 
     def __init__(self, workers: int, ends: Mapping[int, End]) -> None:
         self.workers = workers
@@ -98,7 +105,7 @@ class Workers(Pool):
         self.started.append(order)
         self._running.append(Future())
         self.at_once = max(self.at_once, sum(not future.done() for future in self._running))
-        if len(self._running) % 2 == 0:  # two begin, and then both end
+        if len(self._running) % 2 == 0:  # two start, and then both end
             for future, number in zip(self._running[-2:], (-2, -1), strict=True):
                 future.set_result(self.ends.get(len(self._running) + number, End("finished")))
         return self._running[-1]
@@ -107,7 +114,7 @@ class Workers(Pool):
         yield self.started[-1].directory, 1, 2.5
         yield Path("nowhere"), 1, 3.5
 
-    def ask_to_stop(self) -> None:
+    def request_stop(self) -> None:
         self.stopping = True
         for future in self._running:
             if not future.done():
@@ -116,20 +123,20 @@ class Workers(Pool):
 
 @attrs.define
 class Notes(Watcher):
-    """Notes what a watcher receives."""
+    """A watcher that records what it receives."""
 
-    made: list[tuple[str, Planned]] = attrs.field(factory=list)
+    events: list[tuple[str, Planned]] = attrs.field(factory=list)
     ends: list[End] = attrs.field(factory=list)
 
     def on_run_started(self, planned: Planned) -> None:
-        self.made.append(("began", planned))
+        self.events.append(("started", planned))
 
     def on_turn_finished(self, planned: Planned, turn: int, best: float | None) -> None:
         assert (turn, best) == (1, 2.5)
-        self.made.append(("told", planned))
+        self.events.append(("progress", planned))
 
     def on_run_ended(self, planned: Planned, end: End) -> None:
-        self.made.append(("ended", planned))
+        self.events.append(("ended", planned))
         self.ends.append(end)
 
 
@@ -143,27 +150,27 @@ def orders(toy_study: Read, tmp_path: Path) -> dict[Planned, Order]:
 
 
 class TestWork:
-    def test_is_done_in_order_by_so_many_workers(self, orders: dict[Planned, Order]) -> None:
+    def test_is_done_in_order_by_all_workers(self, orders: dict[Planned, Order]) -> None:
         workers, notes = Workers(2, {}), Notes()
         execute(orders, workers, notes, lambda: False)
         assert workers.started == list(orders.values())
         assert workers.at_once == 2
-        assert [run for what, run in notes.made if what == "began"] == list(orders)
-        assert {run for what, run in notes.made if what == "ended"} == set(orders)
+        assert [run for event, run in notes.events if event == "started"] == list(orders)
+        assert {run for event, run in notes.events if event == "ended"} == set(orders)
         for run in list(orders)[1::2]:
-            assert notes.made.index(("began", run)) < notes.made.index(("told", run))
-            assert notes.made.index(("told", run)) < notes.made.index(("ended", run))
+            assert notes.events.index(("started", run)) < notes.events.index(("progress", run))
+            assert notes.events.index(("progress", run)) < notes.events.index(("ended", run))
 
-    def test_that_failed_is_noted_and_the_others_go_on(self, orders: dict[Planned, Order]) -> None:
+    def test_that_failed_is_recorded_and_stops_no_other(self, orders: dict[Planned, Order]) -> None:
         first, *others = orders
-        note_failure(others[0].directory, "a fault of yesterday")
+        record_failure(others[0].directory, "a fault of yesterday")
         workers, notes = Workers(2, {0: End("failed", "a fault")}), Notes()
         execute(orders, workers, notes, lambda: False)
         assert status_of(first) == Status("failed", "a fault")
         assert len(workers.started) == 4
         assert {status_of(run).state for run in others} == {"missing"}
 
-    def test_stops_after_what_is_running(self, orders: dict[Planned, Order]) -> None:
+    def test_stops_after_the_runs_in_progress(self, orders: dict[Planned, Order]) -> None:
         workers, notes = Workers(1, {}), Notes()
         asked = iter([False, True, True, True])
         execute(orders, workers, notes, lambda: next(asked))
@@ -172,7 +179,7 @@ class TestWork:
         assert notes.ends == [End("stopped")]
 
 
-def test_a_damaged_run_says_what_to_do(made: tuple[Study, Path, list[Planned]]) -> None:
+def test_an_error_about_a_damaged_run_has_a_hint(made: tuple[Study, Path, list[Planned]]) -> None:
     study, directory, planned = made
     (planned[2].directory / "run.db").write_bytes(b"x" * 4096)
     with pytest.raises(InputError, match=r"run\.db: ") as caught:

@@ -1,4 +1,4 @@
-"""Rows of a study: of its own runs, and of those that were imported."""
+"""Rows of a study: those of its own runs, and imported ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from evoframe import InputError, load_run, run
 from evoframe.study.conduct import claim, survey
 from evoframe.study.gathered import gather, import_rows, imported_rows
 from evoframe.study.plan import Planned, Study
-from evoframe.study.progress import note_failure
+from evoframe.study.progress import record_failure
 from evoframe.study.rows import Row, read_rows, row_of, write_rows
 
 Read = Callable[..., Study]
@@ -26,7 +26,7 @@ def kept(study: Study, directory: Path) -> list[Row]:
     return rows
 
 
-def test_rows_of_elsewhere_count_as_finished(
+def test_imported_rows_count_as_finished(
     made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
 ) -> None:
     study, directory, _ = made
@@ -44,7 +44,7 @@ def test_rows_of_elsewhere_count_as_finished(
     assert (there / "curves.csv").read_bytes() == (directory / "curves.csv").read_bytes()
 
 
-def test_rows_of_elsewhere_stand_for_runs_that_are_not_finished_here(
+def test_imported_rows_replace_runs_that_are_not_finished_here(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path
 ) -> None:
     study, directory, planned = made
@@ -52,7 +52,7 @@ def test_rows_of_elsewhere_stand_for_runs_that_are_not_finished_here(
     there = tmp_path / "there"
     claim(study, there)
     failed, begun, missing, finished = study.planned(there)
-    note_failure(failed.directory, "a fault")
+    record_failure(failed.directory, "a fault")
     begun.directory.mkdir(parents=True)
     shutil.copy(planned[1].directory / "config.toml", begun.directory)
     shutil.copytree(planned[3].directory, finished.directory)
@@ -65,23 +65,27 @@ def test_rows_of_elsewhere_stand_for_runs_that_are_not_finished_here(
     assert [statuses[run].state for run in (failed, begun, missing)] == ["imported"] * 3
     rows = gather(statuses, imported)
     assert [row.champion for row in rows.values()] == [row.champion for row in gathered]
-    assert rows[finished] == gathered[3]  # and not with the digits of a table of curves
+    assert rows[finished] == gathered[3]  # with all digits of its curves, not six
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("change", "key", "problem"),
     [
-        (("toy-product,0,", "toy-product,7,"), "run 7: is no run of this study"),
-        (("toy-product,0,", "toy-other,0,"), "is no run of this study"),
-        (("toy-product,0,", "toy-product,0,1"), "was made with another configuration or seed"),
-        (("toy-product,0,", "toy-product,zero,"), "line 2: is no row of a study"),
-        (("toy-product,0,", "toy-product,0,,"), "its lines are of different lengths"),
-        (("run,seed", "run,seeds"), "is no table of a study: it has no column seed"),
-        ((",0.1.0,", ",0.1.0,nan,"), "is no table: its lines are of different lengths"),
+        (
+            ("toy-product,0,", "toy-product,7,"),
+            "collaboration.n=1, simulator=toy-product, run 7",
+            "no such run",
+        ),
+        (("toy-product,0,", "toy-other,0,"), "collaboration.n=1, simulator=toy-other, run 0", "no such run"),
+        (("toy-product,0,", "toy-product,0,1"), "collaboration.n=1, simulator=toy-product, run 0", "seed 1"),
+        (("toy-product,0,", "toy-product,zero,"), "line 2", "'zero'"),
+        (("toy-product,0,", "toy-product,0,,"), "", "lines"),
+        (("run,seed", "run,seeds"), "", "seed"),
+        ((",0.1.0,", ",0.1.0,nan,"), "", "lines"),
     ],
 )
 def test_rows_of_something_else_are_refused(
-    made: tuple[Study, Path, list[Planned]], change: tuple[str, str], message: str
+    made: tuple[Study, Path, list[Planned]], change: tuple[str, str], key: str, problem: str
 ) -> None:
     study, directory, _ = made
     kept(study, directory)
@@ -89,10 +93,11 @@ def test_rows_of_something_else_are_refused(
     path.write_text(path.read_text().replace(*change))
     with pytest.raises(InputError) as caught:
         import_rows(study, directory, [path])
-    assert message in str(caught.value)
+    assert (caught.value.source, caught.value.key) == (str(path), key)
+    assert problem in caught.value.problem
 
 
-def test_rows_of_cells_that_are_not_asked_for_now_are_kept(
+def test_rows_of_cells_that_are_not_requested_now_are_kept(
     made: tuple[Study, Path, list[Planned]], toy_study: Read, tmp_path: Path
 ) -> None:
     study, directory, planned = made
@@ -112,33 +117,32 @@ def test_rows_that_contradict_each_other_are_refused(made: tuple[Study, Path, li
     rows = kept(study, directory)
     import_rows(study, directory, [directory / "rows.csv"])
     write_rows([attrs.evolve(rows[0], champion="other")], directory / "rows.csv")
-    with pytest.raises(InputError, match="another champion than in the rows imported before"):
+    with pytest.raises(InputError, match=r"champion was \w{64}, is other$") as caught:
         import_rows(study, directory, [directory / "rows.csv"])
+    assert caught.value.key.endswith(", run 0")
 
 
 def changed(path: Path, change: Callable[[list[str]], list[str]]) -> None:
     path.write_text("\n".join([*change(path.read_text().splitlines()), ""]))
 
 
-def test_a_score_that_is_no_number_is_refused(made: tuple[Study, Path, list[Planned]]) -> None:
+def test_a_score_that_is_not_a_number_is_refused(made: tuple[Study, Path, list[Planned]]) -> None:
     study, directory, _ = made
     [row, *_] = kept(study, directory)
     path = directory / "rows.csv"
     path.write_text(path.read_text().replace(f",{row.score!r},", ",nan,", 1))
-    with pytest.raises(
-        InputError, match=r"rows\.csv: line 2: is no row of a study: expected a number, found nan"
-    ):
+    with pytest.raises(InputError, match="found nan") as caught:
         import_rows(study, directory, [path])
+    assert (caught.value.source, caught.value.key) == (str(path), "line 2")
 
 
 def test_curves_that_are_cut_are_refused(made: tuple[Study, Path, list[Planned]]) -> None:
     study, directory, _ = made
     kept(study, directory)
     changed(directory / "curves.csv", lambda lines: [line.rpartition(",")[0] for line in lines])
-    with pytest.raises(
-        InputError, match=r"curves\.csv: the \w+ of line \d of rows\.csv does not end as that"
-    ):
+    with pytest.raises(InputError, match=r"rows\.csv, line \d: the (fitness|score)") as caught:
         import_rows(study, directory, [directory / "rows.csv"])
+    assert caught.value.source == str(directory / "curves.csv")
 
 
 def test_rows_of_runs_of_different_lengths_are_read_again(toy_study: Read, tmp_path: Path) -> None:
@@ -159,7 +163,7 @@ def test_curves_can_be_imported_later(made: tuple[Study, Path, list[Planned]], t
     there, curves = tmp_path / "there", directory / "curves.csv"
     claim(study, there)
     text = curves.read_text()
-    changed(curves, lambda lines: lines[:2])  # of one run, and of that one of two
+    changed(curves, lambda lines: lines[:2])  # one of the two curves of one run
     import_rows(study, there, [directory / "rows.csv"])
     lengths = [len(row.fitness_curve) for row in imported_rows(study, there).values()]
     assert sorted(lengths) == [0, 0, 0, 5]
@@ -178,17 +182,20 @@ def test_a_table_that_contradicts_what_was_imported_is_refused(
     import_rows(study, there, [directory / "rows.csv"])
     other = attrs.evolve(first, fittest_pair_score=first.fittest_pair_score + 1.0, seconds=9.0)
     write_rows([other, *others], tmp_path / "rows.csv")
-    with pytest.raises(
-        InputError, match=r"run 0: another fittest_pair_score than in the rows imported before"
-    ):
+    with pytest.raises(InputError) as caught:
         import_rows(study, there, [tmp_path / "rows.csv"])
+    assert caught.value.source == str(tmp_path / "rows.csv")
+    assert caught.value.key.endswith(", run 0")
+    assert f"fittest_pair_score was {first.fittest_pair_score}, " in caught.value.problem
+    assert "seconds" not in caught.value.problem
 
 
 @pytest.mark.parametrize("text", ["", "garbage\n", "run,seed\n"])
-def test_what_is_no_table_of_rows_is_refused(
+def test_a_file_that_is_not_a_table_of_rows_is_refused(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path, text: str
 ) -> None:
     study, directory, _ = made
     (tmp_path / "rows.csv").write_text(text)
-    with pytest.raises(InputError, match=r"rows\.csv: is no table of a study: it has no column "):
+    with pytest.raises(InputError, match="missing columns: ") as caught:
         import_rows(study, directory, [tmp_path / "rows.csv"])
+    assert caught.value.source == str(tmp_path / "rows.csv")

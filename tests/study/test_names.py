@@ -1,4 +1,4 @@
-"""Cells are called in one way wherever they are named."""
+"""Names of cells, the same wherever they are shown."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def test_the_last_setting_comes_first(settings: dict[str, str], name: str) -> No
     assert name_of(settings) == name
 
 
-def test_what_cells_share_is_listed() -> None:
+def test_shared_settings_are_listed() -> None:
     names = {"collaboration.n": "n", "aggregator": "mean", "other": "unused"}
     assert title_of({"collaboration.n": "2", "aggregator": "wm"}, names) == "n = 2, mean = wm"
 
 
-def test_keys_are_as_long_as_it_takes_to_tell_them_apart() -> None:
+def test_keys_are_as_long_as_it_takes_to_distinguish_them() -> None:
     keys = ("a.evolver.rate", "b.evolver.rate", "simulator.name", "aggregator", "x.aggregator")
     assert headings(keys) == {
         "a.evolver.rate": "a.evolver.rate",
@@ -39,7 +39,7 @@ def test_keys_are_as_long_as_it_takes_to_tell_them_apart() -> None:
 
 
 @given(st.sets(st.lists(st.sampled_from("abc"), min_size=1, max_size=4).map(".".join), max_size=6))
-def test_no_two_keys_are_called_alike(keys: set[str]) -> None:
+def test_no_two_keys_have_the_same_name(keys: set[str]) -> None:
     found = headings(keys)
     assert len(set(found.values())) == len(keys)
     assert all(f".{key}".endswith(f".{name}") for key, name in found.items())

@@ -1,4 +1,4 @@
-"""Workers of a study: one that is lost takes no other along."""
+"""Workers of a study: the loss of one does not affect the others."""
 
 from __future__ import annotations
 
@@ -29,33 +29,33 @@ def pool() -> Iterator[Pool]:
         yield pool
 
 
-def heard(pool: Pool, about: Path) -> Iterator[int]:
-    """Yield the numbers of the processes that tell about a run."""
+def reports(pool: Pool, about: Path) -> Iterator[int]:
+    """Yield the ids of the processes that report on a run."""
     until = time.monotonic() + 30
     while time.monotonic() < until:
         for directory, process, _ in pool.news():
             if directory == about:
                 yield process
                 until = time.monotonic() + 30
-    raise AssertionError(f"nothing was told about {about}")
+    raise AssertionError(f"no report on {about}")
 
 
-def test_the_others_go_on_when_one_is_killed_while_it_tells(pool: Pool) -> None:
+def test_the_others_continue_when_one_is_killed_while_it_reports(pool: Pool) -> None:
     other = pool._processes.schedule(chatter, [1])
     killed: set[int] = set()
     for _ in range(8):
         lost = pool._processes.schedule(chatter, [0])
-        # Pebble loses sight of work whose process is killed before it knows that it has begun.
-        process = next(each for each in heard(pool, LOST) if each not in killed and lost.running())
+        # Pebble loses track of work whose process is killed before pebble knows that it has started.
+        process = next(each for each in reports(pool, LOST) if each not in killed and lost.running())
         os.kill(process, signal.SIGKILL)
         killed.add(process)
         with pytest.raises(pebble.ProcessExpired):
             lost.result(60)
-        for _, _ in zip(range(10_000), heard(pool, OTHER), strict=False):
-            pass  # more than was told before: a pipe holds 65,536 bytes
+        for _, _ in zip(range(10_000), reports(pool, OTHER), strict=False):
+            pass  # more than the pipe held before: its capacity is 65,536 bytes
     assert not other.done()
-    pool.ask_to_stop()
-    pool.ask_to_stop()
+    pool.request_stop()
+    pool.request_stop()
     for _ in pool.news():
         pass
     other.result(60)
@@ -68,13 +68,13 @@ def expired(code: int) -> Exception:
 @pytest.mark.parametrize(
     ("error", "cause"),
     [
-        (expired(-signal.SIGKILL), "its process ended with the signal SIGKILL"),
-        (expired(3), "its process ended with exit code 3"),
-        (BrokenProcessPool(), "there was no process to make it"),
+        (expired(-signal.SIGKILL), "SIGKILL"),
+        (expired(3), "exit code 3"),
+        (BrokenProcessPool(), "no worker"),
     ],
 )
-def test_work_that_took_its_process_along_has_failed(error: Exception, cause: str) -> None:
+def test_work_whose_process_was_lost_has_failed(error: Exception, cause: str) -> None:
     future: Future[End] = Future()
     future.set_exception(error)
     assert end_of(future).state == "failed"
-    assert end_of(future).cause.startswith(cause)
+    assert cause in end_of(future).cause

@@ -1,4 +1,4 @@
-"""How far runs are, and why some failed."""
+"""Statuses of runs, and the causes of failures."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ import pytest
 from evoframe.files.locks import locked
 from evoframe.record.layout import VERIFICATION_FILE
 from evoframe.study.plan import Planned, Study
-from evoframe.study.progress import FAILURE_FILE, Status, forget_failure, note_failure, status_of
+from evoframe.study.progress import FAILURE_FILE, Status, clear_failure, record_failure, status_of
 
 Made = tuple[Study, Path, list[Planned]]
 
 
-def test_a_failure_is_noted_until_it_is_forgotten(made: Made) -> None:
+def test_a_failure_is_recorded_until_it_is_cleared(made: Made) -> None:
     [planned, *_] = made[2]
-    note_failure(planned.directory, "a fault")
+    record_failure(planned.directory, "a fault")
     assert (status_of(planned).state, status_of(planned).cause) == ("failed", "a fault")
-    forget_failure(planned.directory)
+    clear_failure(planned.directory)
     assert status_of(planned).state == "finished"
-    forget_failure(planned.directory)  # by another process, meanwhile
+    clear_failure(planned.directory)  # after another process has cleared it
 
 
 def test_the_first_cause_stays(made: Made) -> None:
     [planned, *_] = made[2]
-    note_failure(planned.directory, "a fault")
-    note_failure(planned.directory, "its consequence")
+    record_failure(planned.directory, "a fault")
+    record_failure(planned.directory, "its consequence")
     assert status_of(planned).cause == "a fault"
 
 
-def test_no_failure_is_noted_of_a_run_at_which_another_process_is(made: Made) -> None:
+def test_no_failure_is_recorded_for_a_run_that_another_process_executes(made: Made) -> None:
     [planned, *_] = made[2]
     with locked(planned.directory):
-        note_failure(planned.directory, "a fault")
+        record_failure(planned.directory, "a fault")
     assert status_of(planned).state == "finished"
 
 
@@ -48,7 +48,7 @@ def test_a_finished_run_is_complete_when_it_is_verified_or_cannot_be(made: Made)
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}"])
-def test_a_failure_that_says_no_cause_is_one(made: Made, text: str) -> None:
+def test_a_failure_without_a_cause_counts(made: Made, text: str) -> None:
     [planned, *_] = made[2]
     (planned.directory / FAILURE_FILE).write_text(text)
     assert (status_of(planned).state, status_of(planned).cause) == ("failed", "unknown")

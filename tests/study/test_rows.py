@@ -1,4 +1,4 @@
-"""Rows: what is written is read again, and what is no row of a study is named."""
+"""Rows are read as they were written, and files that are not tables of rows are refused."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path, given_rows: list[Row
 
 
 @pytest.mark.parametrize("path", sorted(RESULTS.glob("*/rows.csv")), ids=lambda path: path.parent.name)
-def test_rows_that_are_published_are_written_as_they_stand(tmp_path: Path, path: Path) -> None:
+def test_published_rows_are_written_again_byte_for_byte(tmp_path: Path, path: Path) -> None:
     write_rows(read_rows(path), tmp_path / "rows.csv")
     for name in ("rows.csv", "curves.csv"):
         assert (tmp_path / name).read_bytes() == path.with_name(name).read_bytes()
@@ -72,7 +72,7 @@ def test_the_curve_of_scores_is_the_best_so_far_after_each_generation(
     assert score_curve(finished, 2) == tuple(best)
 
 
-def test_rows_are_read_without_their_curves_too(
+def test_rows_are_also_read_without_their_curves(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path
 ) -> None:
     row = row_of(made[2][0], load_run(made[2][0].directory))
@@ -82,10 +82,11 @@ def test_rows_are_read_without_their_curves_too(
 
 
 @pytest.mark.parametrize("curve", ["a,0,score,bent", "a,zero,score,1"])
-def test_what_is_no_curve_is_refused(
+def test_a_line_that_is_not_a_curve_is_refused(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path, curve: str
 ) -> None:
     write_rows([row_of(made[2][0], load_run(made[2][0].directory))], tmp_path / "rows.csv")
     (tmp_path / "curves.csv").write_text(f"aggregator,run,curve,0\n{curve}\n")
-    with pytest.raises(InputError, match=r"curves\.csv: line 2: is no curve of a study"):
+    with pytest.raises(InputError, match=curve.split(",")[1 if "zero" in curve else 3]) as caught:
         read_rows(tmp_path / "rows.csv")
+    assert (caught.value.source, caught.value.key) == (str(tmp_path / "curves.csv"), "line 2")

@@ -1,4 +1,4 @@
-"""What a process of a study does with a run."""
+"""Execution of runs by the worker processes of a study."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ from evoframe.runs.execution import Execution
 from evoframe.runs.starting import prepare
 from evoframe.study import worker
 from evoframe.study.plan import Planned, Study
-from evoframe.study.worker import Order, Talk, _Teller, perform
+from evoframe.study.progress import REMEDY
+from evoframe.study.worker import Channel, Order, _Reporter, perform
 
 Read = Callable[..., Study]
-SILENT = Talk(lambda _, __: None, lambda: False)
+SILENT = Channel(lambda _, __: None, lambda: False)
 
 
 @pytest.fixture
 def planned(toy_study: Read, tmp_path: Path) -> tuple[Study, Planned]:
-    """The first run of toys that can be verified."""
+    """The first run of toys whose champion can be verified."""
     study = toy_study()
     return study, list(study.planned(tmp_path / "here"))[1]
 
@@ -42,7 +43,7 @@ def order(planned: tuple[Study, Planned], toy_plugins: Plugins, monkeypatch: pyt
 
 
 def meanwhile(monkeypatch: pytest.MonkeyPatch, first: Callable[[RunConfig, Path], object]) -> None:
-    """Let something happen after it was seen that a run has not begun."""
+    """Call *first* after the check that a run has not started, and before it starts."""
 
     def prepared(config: RunConfig, plugins: Plugins, out: Path) -> Execution:
         first(config, out)
@@ -51,28 +52,27 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch, first: Callable[[RunConfig, Path]
     monkeypatch.setattr(worker, "prepare", prepared)
 
 
-def test_what_is_left_of_a_damaged_run_is_not_taken_for_one(order: Order) -> None:
+def test_remains_of_a_damaged_run_are_refused(order: Order) -> None:
     order.directory.mkdir(parents=True)
     (order.directory / "champion.vxa").touch()
-    with pytest.raises(NotEmptyError, match="00: is not empty") as caught:
+    with pytest.raises(NotEmptyError, match="not empty") as caught:
         perform(order, SILENT)
-    assert full_text(caught.value).endswith(
-        "00: is not empty\n  a run whose directory is removed is made again"
-    )
+    assert caught.value.source == str(order.directory)
+    assert full_text(caught.value).endswith(f"\n  {REMEDY}")
 
 
-def test_a_run_that_another_process_has_made_meanwhile_is_finished(
+def test_a_run_that_another_process_has_finished_meanwhile_is_finished(
     order: Order, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def make(config: RunConfig, out: Path) -> None:
+    def finish(config: RunConfig, out: Path) -> None:
         evoframe.run(config, out=out)
 
-    meanwhile(monkeypatch, make)
+    meanwhile(monkeypatch, finish)
     assert perform(order, SILENT)
     assert load_run(order.directory).resumes() == []
 
 
-def test_a_run_that_another_process_has_begun_meanwhile_is_left_to_it(
+def test_a_run_that_another_process_has_started_meanwhile_is_left_to_it(
     order: Order, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     others: list[Any] = []
@@ -89,7 +89,7 @@ def test_a_run_whose_directory_another_process_has_just_locked_is_left_to_it(
     order.directory.mkdir(parents=True)
     with locked(order.directory), pytest.raises(LockedError) as caught:
         perform(order, SILENT)
-    assert full_text(caught.value) == str(caught.value)  # nothing is damaged
+    assert full_text(caught.value) == str(caught.value)  # no hint: the run is not damaged
     assert perform(order, SILENT)
 
 
@@ -98,7 +98,7 @@ def test_a_finished_run_is_only_verified_and_only_once(order: Order) -> None:
     verification = order.directory / VERIFICATION_FILE
     made, database = verification.read_bytes(), (order.directory / "run.db").read_bytes()
     verification.unlink()
-    with locked(order.directory), pytest.raises(LockedError):  # somebody verifies it just now
+    with locked(order.directory), pytest.raises(LockedError):  # another process is verifying it
         perform(order, SILENT)
     assert perform(order, SILENT)
     assert verification.read_bytes() == made
@@ -108,16 +108,16 @@ def test_a_finished_run_is_only_verified_and_only_once(order: Order) -> None:
 
 
 @pytest.mark.parametrize(("pace", "turns"), [(0.0, [0]), (0.1, [0, 3, 6]), (1.0, [*range(9)])])
-def test_turns_are_told_not_more_often_than_anybody_looks(
+def test_turns_are_reported_at_most_once_per_interval(
     order: Order, toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch, pace: float, turns: list[int]
 ) -> None:
     clock = itertools.count()
     monkeypatch.setattr("time.monotonic", lambda: next(clock) * pace)
-    told: list[tuple[int, float | None]] = []
-    teller = _Teller(Talk(lambda turn, best: told.append((turn, best)), lambda: False))
-    made, best = [], None
+    reported: list[tuple[int, float | None]] = []
+    reporter = _Reporter(Channel(lambda turn, best: reported.append((turn, best)), lambda: False))
+    finished, best = [], None
     for turn in assemble(resolve_layers(order.layers, order.label, toy_plugins)):
-        teller.evoframe_turn_finished(turn)
+        reporter.evoframe_turn_finished(turn)
         best = turn.best_pair.score if turn.best_pair else best
-        made.append((turn.index, best))
-    assert told == [made[turn] for turn in turns]
+        finished.append((turn.index, best))
+    assert reported == [finished[turn] for turn in turns]

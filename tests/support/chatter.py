@@ -1,14 +1,14 @@
-"""A worker of a study that tells without a pause, in a module that its process can import."""
+"""A worker of a study that reports without pause, in a module that its process can import."""
 
 from __future__ import annotations
 
 import os
 
-from evoframe.study.pool import _talk
+from evoframe.study.pool import _channel
 
 
 def chatter(number: int) -> None:
-    """Tell in place of a turn which process this is, until it is asked to stop."""
-    talk = _talk(number)
-    while not talk.stop():
-        talk.tell(os.getpid(), None)
+    """Report the process's id in place of a turn, until a stop is requested."""
+    channel = _channel(number)
+    while not channel.stop():
+        channel.report(os.getpid(), None)

@@ -1,4 +1,4 @@
-"""Robustness: the same random controllers for every body."""
+"""Robustness of bodies: their scores with the same random controllers."""
 
 from evoframe.robustness.api import measurable, measure, measure_robustness, setting_of
 from evoframe.robustness.candidates import read_candidates

@@ -1,4 +1,4 @@
-"""Robustness of what a person names: the champions of runs and studies, bodies of files, published bodies."""
+"""Robustness from Python: champions of runs and studies, bodies in files, and published bodies."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
 ) -> Robustness:
     """Simulate bodies with the same random controllers, as the command ``evoframe robustness`` does.
 
-    Nothing is written; ``evoframe.analysis.robustness`` has the statistics, the figure and the files.
+    Nothing is written; ``evoframe.analysis.robustness`` provides statistics, figure and files.
 
     Args:
-        *sources: Runs or their directories, which stand for their champions; directories of studies, which
-            stand for the champions of their finished runs; and files with designs.
-        controllers: How many are drawn.
-        published: Whether the bodies that the simulator brings join.
-        seed: All controllers derive from it, and from nothing else.
-        preset: With which all are simulated; a champion otherwise as in its run.
+        *sources: Runs or their directories (for their champions), directories of studies (for the champions
+            of their finished runs), and files with designs.
+        controllers: Number of random controllers.
+        published: Whether to add the published bodies of the simulator.
+        seed: The only seed from which the controllers derive.
+        preset: The preset that simulates all bodies; by default, a champion is simulated as in its run.
         workers: Overrides ``executor.workers``; the result does not depend on it.
-        plugins: The plugins to choose from; by default those that are installed.
+        plugins: The plugins to choose from; by default the installed ones.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
 
     Raises:
-        ConfigurationError: The settings cannot be accepted, or the simulator draws no controllers.
-        InputError: Something cannot be read, there is no body, or the bodies do not fit together.
-        RunError: The measurement cannot be made.
+        ConfigurationError: The settings are not valid, or the simulator does not draw controllers.
+        InputError: A source cannot be read, there are no bodies, or they cannot be compared.
+        RunError: The measurement failed.
     """
     paths = [source.directory if isinstance(source, Run) else Path(source) for source in sources]
     overrides = layers_of({**settings, "executor.workers": workers})
@@ -58,11 +58,11 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
 
 @attrs.frozen
 class Measurable:
-    """A champion that could be measured.
+    """A champion whose robustness can be measured.
 
     Attributes:
-        digest: As of a :class:`~evoframe.robustness.measurement.Body`.
-        simulation: How it is simulated in its run: the tables ``simulator`` and ``objective``, as in JSON.
+        digest: As in :class:`~evoframe.robustness.measurement.Body`.
+        simulation: The tables ``simulator`` and ``objective`` of its run, as JSON values.
     """
 
     digest: str
@@ -70,13 +70,13 @@ class Measurable:
 
 
 def measurable(directory: Path, plugins: Plugins) -> Iterator[Measurable]:
-    """Return the champions of a run, or of the finished runs of a study that are there.
+    """Yield the champion of a run, or the champions of a study's finished runs.
 
-    They need not be simulated alike; those whose simulator draws no controllers are left out.
+    Their simulations may differ; champions whose simulator does not draw controllers are skipped.
 
     Raises:
-        ConfigurationError: One of them cannot be read with these plugins.
-        InputError: One of them is damaged.
+        ConfigurationError: A champion cannot be read with these plugins.
+        InputError: A run is damaged.
     """
     for part in champions(directory, plugins):
         simulator = part.config.simulator.component
@@ -87,10 +87,10 @@ def measurable(directory: Path, plugins: Plugins) -> Iterator[Measurable]:
 
 
 def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
-    """Return all that decides a measurement, before it is made.
+    """Return the setting of a measurement, which determines its result.
 
     Raises:
-        ConfigurationError: There is no such seed or number of controllers.
+        ConfigurationError: The seed or the number of controllers is out of range.
     """
     config = candidates.config
     bodies = [
@@ -102,7 +102,7 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
         return Setting(seed, controllers, unit, config.simulation(), tuple(bodies))
     except (TypeError, ValueError) as error:
         raise ConfigurationError(
-            f"expected 1 or more controllers and a seed from 0 up, found {controllers!r} and {seed!r}"
+            f"expected controllers >= 1 and seed >= 0, found {controllers!r} and {seed!r}"
         ) from error
 
 
@@ -112,13 +112,13 @@ def measure(
     """Simulate all bodies with all controllers.
 
     Args:
-        candidates: The bodies, and what simulates them.
-        setting: Of the same bodies.
-        on_progress: Called now and then with the number of simulations done since the last time.
+        candidates: The bodies and their configuration.
+        setting: The setting of the same bodies.
+        on_progress: Called repeatedly with the number of simulations finished since its last call.
 
     Raises:
         InputError: The simulator cannot simulate a body.
-        RunError: The measurement cannot be made.
+        RunError: The measurement failed.
     """
     config = candidates.config
     workers = config.executor.component.start()
@@ -131,6 +131,6 @@ def measure(
 
 
 def _simulator(candidates: Candidates) -> SupportsRandomControllers:
-    simulator: Any = candidates.config.simulator.component  # which draws controllers, as all candidates' do
+    simulator: Any = candidates.config.simulator.component  # draws controllers: read_candidates checks it
     found: SupportsRandomControllers = simulator
     return found

@@ -1,4 +1,4 @@
-"""Which bodies are measured together, and how: what a person names, read and found to fit together."""
+"""Selection of the bodies that are measured together, from runs, studies, files and published bodies."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Candidates:
     """Bodies that can be measured together.
 
     Attributes:
-        config: What simulates, scores and spreads over workers.
-        bodies: At least one; all of one canvas, and no two of one name.
+        config: Configuration of simulator, objective and executor.
+        bodies: One or more bodies on the same canvas, with different names.
     """
 
     config: RunConfig
@@ -38,9 +38,9 @@ class Part:
     """The bodies of one file or run.
 
     Attributes:
-        named: What a person named to get them.
-        config: How they are simulated.
-        bodies: At least one.
+        named: The source as the user named it.
+        config: Configuration that simulates them.
+        bodies: One or more bodies.
     """
 
     named: str
@@ -56,23 +56,22 @@ def read_candidates(
     *,
     published: bool = False,
 ) -> Candidates:
-    """Read the bodies that a person names.
+    """Read the bodies of all sources, and check that they can be compared.
 
-    A study stands for the champions of its finished runs, a group for each configuration; a run and a file
-    are read as :func:`~evoframe.designs.sources.read_job` does, and each of their bodies is a group
-    of its own.
+    A study provides the champions of its finished runs, with a group for each configuration. A run or file is
+    read as by :func:`~evoframe.designs.sources.read_job`, and each of its bodies is a group.
 
     Args:
         sources: Directories of studies and runs, and files with designs.
-        preset: Name of a preset, or path of a TOML file, with which all are simulated.
-        overrides: ``key=value``, or layers, for all.
+        preset: Name of a preset, or path of a TOML file, that simulates all bodies.
+        overrides: Overrides for all bodies, as ``key=value`` or layers.
         plugins: The plugins to choose from.
-        published: Whether the bodies that the simulator brings join; they are simulated as the first source
-            is, or with the preset (``paper`` if none is named) if there is no other.
+        published: Whether to add the published bodies of the simulator. They are simulated like the first
+            source or, without sources, with the preset (by default ``paper``).
 
     Raises:
-        InputError: Something cannot be read, or what was read does not fit together; says what and why.
-        ConfigurationError: It cannot be simulated like this.
+        InputError: A source cannot be read, or the bodies cannot be compared.
+        ConfigurationError: The bodies cannot be simulated with these settings.
     """
     studies = [path for path in sources if _is_study(path)]
     alike = len({shown_name(path) for path in studies}) < len(studies)
@@ -84,36 +83,36 @@ def read_candidates(
         parts.append(_published(config))
     bodies = tuple(body for part in parts for body in part.bodies)
     if not bodies:
-        raise InputError("there is no body to measure; name runs, studies or files, or use --published")
+        raise InputError("no body to measure; name runs, studies or files, or add --published")
     _refuse_other_simulations(parts)
     _refuse_same_names(parts)
     config = parts[0].config
     if not isinstance(config.simulator.component, SupportsRandomControllers):
         raise ConfigurationError(
-            f"the simulator '{config.simulator.name}' draws no random controllers, so there is nothing that "
-            "bodies could be measured with"
+            f"the simulator '{config.simulator.name}' does not draw random controllers, which robustness "
+            "requires; choose another, as in --set simulator=vox"
         )
     _refuse_other_canvases(bodies, config.simulator.component.requires)
     return Candidates(config, bodies)
 
 
 def champions(directory: Path, plugins: Plugins) -> Iterator[Part]:
-    """Return the champion of a run, or those of the finished runs of a study that are there.
+    """Yield the champion of a run, or the champions of a study's finished runs.
 
     Args:
-        directory: Of the run or study.
+        directory: Directory of the run or study.
         plugins: The plugins to choose from.
 
     Raises:
-        InputError: One of them is damaged.
-        ConfigurationError: One of them cannot be simulated with these plugins.
+        InputError: A run is damaged.
+        ConfigurationError: A champion cannot be simulated with these plugins.
     """
     return _Reader(None, (), plugins, {}).parts(directory)
 
 
 @attrs.frozen
 class _Reader:
-    """Reads what a person names, one after the other; *studies* are the names of several studies."""
+    """Reader of one source after another; *studies* has the names of studies if there are several."""
 
     preset: str | None
     overrides: Sequence[str | Layer]
@@ -148,10 +147,10 @@ class _Reader:
 
 
 def _some(reader: _Reader, path: Path) -> list[Part]:
-    """Return the parts of a source, which has one at least."""
+    """Return the parts of a source, one or more."""
     found = list(reader.parts(path))
     if not found:
-        raise InputError(f"{path}: no run of this study is finished here, so it has no champions")
+        raise InputError("no run of this study is finished, so it has no champions", source=path)
     return found
 
 
@@ -160,12 +159,12 @@ def _is_study(path: Path) -> bool:
 
 
 def _executor(planned: Planned) -> Layer:
-    """Return what gives bodies all workers of their study: its runs have one each."""
+    """Return the layer with the study's executor, since each of its runs has only one worker."""
     return Layer("the study", {"executor": planned.cell.config.tables()["executor"]})
 
 
 def _of_job(job: Job) -> Part:
-    """Return the bodies of a run or file, each on its own; one that is alone in a file has its path."""
+    """Return the bodies of a run or file, each in its own group; the only body of a file has its path."""
     named = _text(job.path)
     labels = [named if label in (job.path.name, str(job.path)) else label for label in job.labels]
     bodies = [
@@ -175,7 +174,7 @@ def _of_job(job: Job) -> Part:
 
 
 def _text(path: Path) -> str:
-    """Return a path as it stands in files: text, whatever its bytes are."""
+    """Return a path as text for files; bytes that are not UTF-8 are replaced."""
     return str(path).encode("utf-8", "replace").decode()
 
 
@@ -186,7 +185,9 @@ def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugi
 def _published(config: RunConfig) -> Part:
     simulator = config.simulator.component
     if not isinstance(simulator, SupportsPublished):
-        raise ConfigurationError(f"the simulator '{config.simulator.name}' brings no published bodies")
+        raise ConfigurationError(
+            f"the simulator '{config.simulator.name}' has no published bodies; remove --published"
+        )
     named = f"published with {config.simulator.name}"
     with blaming("simulator"):
         bodies = [Candidate(label, label, design, named) for label, design in simulator.published()]
@@ -196,13 +197,15 @@ def _published(config: RunConfig) -> Part:
 def _refuse_other_simulations(parts: Sequence[Part]) -> None:
     first, *others = parts
     for part in others:
-        lines = differences(first.config.simulation(), part.config.simulation(), ("there", "here"))
+        one, other = first.bodies[0].source, part.bodies[0].source
+        words = (f"in {one}", f"in {other}")
+        lines = differences(first.config.simulation(), part.config.simulation(), words)
         if lines:
-            one, other = first.bodies[0].source, part.bodies[0].source
             listed = "\n  ".join(lines)
             raise InputError(
-                f"{other}: is simulated otherwise than {one}; name a preset for all (--preset), or set what "
-                f"differs (--set):\n  {listed}"
+                f"simulation differs from that of {one}; choose one preset for all (--preset), or set these "
+                f"keys (--set):\n  {listed}",
+                source=other,
             )
 
 
@@ -214,8 +217,9 @@ def _refuse_same_names(parts: Sequence[Part]) -> None:
             owner = owners.setdefault(body.group, part.named)
             if owner != part.named or body.label in labels:
                 raise InputError(
-                    f"{part.named}: '{body.group}' is the name of a body or group of {owner} already; name "
-                    "each once, and what only looks alike by another path"
+                    f"'{body.group}' already names a body or group of {owner}; name each source once, and if "
+                    "two sources differ, name one of them by another path",
+                    source=part.named,
                 )
             labels.add(body.label)
 
@@ -227,6 +231,8 @@ def _refuse_other_canvases(bodies: Sequence[Candidate], roles: Sequence[str]) ->
             one, other = first.design.roles[role].shape, body.design.roles[role].shape
             if one != other:
                 raise InputError(
-                    f"{body.source}: {role} has the shape {list(other)}, but in {first.source} it has "
-                    f"{list(one)}; bodies have controllers in common only on one canvas"
+                    f"shape is {list(other)}, but {list(one)} in {first.source}; only bodies on the same "
+                    "canvas can be compared",
+                    source=body.source,
+                    key=role,
                 )

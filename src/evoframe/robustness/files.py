@@ -1,4 +1,4 @@
-"""The directory of a measurement of robustness: its scores and its setting, exact, to be read again."""
+"""The directory of a robustness measurement, with its setting and its exact scores."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ __all__ = [
 ]
 
 SETTING_FILE = "robustness.json"
-"""What was measured, and which simulations diverged."""
+"""The setting of a measurement, and the simulations that diverged."""
 
 SCORES_FILE = "scores.csv"
-"""A line for each controller, a column for each body; empty where a simulation diverged."""
+"""Table of scores, a line for each controller and a column for each body; empty for diverged simulations."""
 
 _FORMAT = 1
 _LARGEST = 256  # MiB
@@ -42,17 +42,17 @@ _FIRST = "controller"  # heading of the first column
 
 
 def write_measurement(measured: Robustness, directory: Path) -> list[Path]:
-    """Write all scores, and what they are of.
+    """Write all scores, and their setting.
 
     Args:
         measured: The measurement.
-        directory: Where to; it is there, and files of an earlier measurement are replaced.
+        directory: An existing directory; files of an earlier measurement are overwritten.
 
     Returns:
-        What was written.
+        Paths of the files.
 
     Raises:
-        RunError: It cannot be written.
+        RunError: A file cannot be written.
     """
     texts = {
         SCORES_FILE: scores_text(measured),
@@ -64,7 +64,7 @@ def write_measurement(measured: Robustness, directory: Path) -> list[Path]:
 
 
 def document_of(measured: Robustness) -> dict[str, Any]:
-    """Return what was measured, and which simulations diverged, as JSON values."""
+    """Return the setting of a measurement, and the simulations that diverged, as JSON values."""
     setting = measured.setting
     lost = [_Lost(each.controller, setting.bodies[each.body].label, each.step) for each in measured.diverged]
     document: dict[str, Any] = unstructure(
@@ -79,25 +79,28 @@ def document_of(measured: Robustness) -> dict[str, Any]:
 
 
 def refuse_another(directory: Path, setting: Setting, *, force: bool = False) -> None:
-    """Make sure that a directory is missing or empty, or has a measurement of the same setting.
+    """Check that a directory is missing or empty, or has a measurement with the same setting.
 
     Args:
-        directory: Where a measurement shall be written.
-        setting: What it will be of.
-        force: Whether a measurement of another setting, or a damaged one, may be replaced.
+        directory: Directory for a new measurement.
+        setting: Setting of the new measurement.
+        force: Whether to overwrite a measurement that is damaged or has another setting.
 
     Raises:
-        InputError: It has something else; says what differs.
+        InputError: The directory has something else, or a measurement with another setting.
     """
     path = directory / SETTING_FILE
     try:
         occupied = directory.exists() and any(directory.iterdir())
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a measurement: {error.strerror}") from error
+        raise InputError(f"cannot be used for a measurement: {error.strerror}", source=directory) from error
     if not occupied:
         return
     if not is_file(path):
-        raise InputError(f"{directory}: is not empty, and not the directory of a measurement; choose another")
+        raise InputError(
+            f"directory is not empty and has no {SETTING_FILE}; choose another directory with --out",
+            source=directory,
+        )
     if force:
         return
     there = _document(path).setting
@@ -105,36 +108,47 @@ def refuse_another(directory: Path, setting: Setting, *, force: bool = False) ->
     lines = differences(_compared(there, labelled=alike), _compared(setting, labelled=alike))
     if lines:
         listed = "\n  ".join(lines)
-        raise InputError(f"{path}: was measured otherwise; use --out, or --force to replace it:\n  {listed}")
+        raise InputError(
+            "measured with other settings; choose another directory with --out, or overwrite it with "
+            f"--force:\n  {listed}",
+            source=path,
+        )
 
 
 def read_robustness(directory: str | Path) -> Robustness:
-    """Return the measurement that :func:`write_measurement` wrote.
+    """Read the measurement that :func:`write_measurement` wrote.
 
     Raises:
-        InputError: There is none, or it is damaged.
+        InputError: The measurement is missing or damaged.
     """
     path = Path(directory) / SETTING_FILE
     if not is_file(path):
-        raise InputError(f"{directory}: is no measurement of robustness: there is no {SETTING_FILE}")
+        raise InputError(
+            f"not a measurement of robustness: {SETTING_FILE} is missing; choose a directory that evoframe "
+            "robustness wrote",
+            source=directory,
+        )
     found = _document(path)
     path = Path(directory) / SCORES_FILE
     text = read_text(path, _LARGEST)
     try:
         scores = _read_scores(text, found)
     except (ValueError, csv.Error) as error:
-        raise InputError(f"{path}: not as evoframe writes it: {error}") from error
+        raise InputError(f"not as evoframe writes it: {error}", source=path) from error
     if hashlib.sha256(text.encode()).hexdigest() != found.scores_sha256:
-        raise InputError(f"{path}: is not the measurement that {SETTING_FILE} describes; measure again")
+        raise InputError(
+            f"its SHA-256 is not the one recorded in {SETTING_FILE}; repeat the measurement with --force",
+            source=path,
+        )
     scores.setflags(write=False)
     return Robustness(found.setting, scores, found.divergences())
 
 
 def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
-    """Return the setting as tables in which each body has a key of its own.
+    """Return the setting as tables in which each body has its own key.
 
-    Bodies are compared by what they are: a run that was moved is the same under another name. *labelled* is
-    whether their labels may stand in what a person reads, for they are the same in both settings.
+    Bodies are compared by digest and group, so a run that was moved still counts as the same body. The keys
+    are labels if *labelled* (if both settings have the same labels), and numbers if not.
     """
     groups = list(setting.groups)
     bodies = {
@@ -146,7 +160,7 @@ def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
 
 @attrs.frozen
 class _Lost:
-    """A simulation that diverged, as it stands in the file of a setting."""
+    """A simulation that diverged, in the format of the setting's file."""
 
     controller: int = attrs.field(validator=ge(0))
     body: str
@@ -155,7 +169,7 @@ class _Lost:
 
 @attrs.frozen
 class _Document:
-    """The file of a setting: the fields of :class:`Setting`, and what belongs to the scores."""
+    """The file of a setting: the fields of :class:`Setting`, and those that describe the scores."""
 
     format: int
     seed: int = attrs.field(validator=ge(0))
@@ -171,14 +185,14 @@ class _Document:
         return Setting(self.seed, self.controllers, self.unit, self.simulation, self.bodies)
 
     def divergences(self) -> tuple[Divergence, ...]:
-        """Return the places of the scores that are missing.
+        """Return the rows and columns of the missing scores.
 
         Raises:
-            ValueError: Two bodies have one label, or one that is missing in a score is none of them.
+            ValueError: There are no bodies, two have the same label, or a label is unknown.
         """
         columns = {body.label: column for column, body in enumerate(self.bodies)}
         if not 0 < len(columns) == len(self.bodies):
-            raise ValueError("bodies: expected at least one, and different labels")
+            raise ValueError("bodies: expected one or more, with different labels")
         if strange := [lost.body for lost in self.diverged if lost.body not in columns]:
             raise ValueError(f"diverged: {strange[0]!r} is not one of the bodies")
         return tuple(Divergence(lost.controller, columns[lost.body], lost.step) for lost in self.diverged)
@@ -188,22 +202,22 @@ def _document(path: Path) -> _Document:
     try:
         document = parsed_json(read_text(path, _LARGEST))
         if not isinstance(document, Mapping) or "bodies" not in document:
-            raise ValueError("this JSON is no measurement of robustness")  # noqa: TRY301 - as all others
+            raise ValueError("not a measurement of robustness")  # noqa: TRY301 - as all others
         if document.get("format") is True or document.get("format") != _FORMAT:
             found = document.get("format")
-            raise ValueError(f"format {found!r}, but this evoframe reads format {_FORMAT}")  # noqa: TRY301
+            raise ValueError(f"format: expected {_FORMAT}, found {found!r}")  # noqa: TRY301 - as all others
         try:
             described = structure(document, _Document, ())
             described.divergences()
         except ValueError as error:
             raise ValueError(f"not as evoframe writes it: {error}") from error
     except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(str(error), source=path) from error
     return described
 
 
 def scores_text(measured: Robustness) -> str:
-    """Return the table of all scores as CSV, exact to the last bit."""
+    """Return the table of all scores as CSV, with all digits."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([_FIRST, *(body.label for body in measured.setting.bodies)])
@@ -216,21 +230,21 @@ def _read_scores(text: str, found: _Document) -> np.ndarray[Any, np.dtype[np.flo
     setting = found.setting
     header, *rows = [*csv.reader(io.StringIO(text))] or [[]]
     if header != [_FIRST, *(body.label for body in setting.bodies)]:
-        raise ValueError(f"its columns are not the bodies of {SETTING_FILE}")
+        raise ValueError(f"columns differ from the bodies in {SETTING_FILE}")
     numbers = [row[0] if row else "" for row in rows]
     if len(rows) != setting.controllers or numbers != [str(number) for number in range(len(rows))]:
         raise ValueError(f"expected a line for each of {setting.controllers} controllers")
     scores = np.array([[*_numbers(row, len(setting.bodies))] for row in rows])
     empty = {(int(row), int(column)) for row, column in np.argwhere(np.isnan(scores))}
     if empty != {(each.controller, each.body) for each in found.divergences()}:
-        raise ValueError(f"scores are missing elsewhere than {SETTING_FILE} says")
+        raise ValueError(f"empty cells differ from the diverged simulations in {SETTING_FILE}")
     return scores
 
 
 def _numbers(row: list[str], bodies: int) -> Iterator[float]:
     if len(row) != bodies + 1:
-        raise ValueError(f"line of controller {row[0]}: expected {bodies} scores, found {len(row) - 1}")
+        raise ValueError(f"controller {row[0]}: expected {bodies} scores, found {len(row) - 1}")
     for cell in row[1:]:
         if cell and not math.isfinite(float(cell)):
-            raise ValueError(f"line of controller {row[0]}: {cell} is no score")
+            raise ValueError(f"controller {row[0]}: expected a finite score, found {cell}")
         yield float(cell) if cell else math.nan

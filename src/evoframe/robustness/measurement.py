@@ -1,6 +1,7 @@
-"""How do bodies do with controllers that nobody evolved for them? All of them with the same random ones.
+"""Measurement of bodies with controllers that were not evolved for them: the same random ones for all.
 
-The paper's robustness experiment (paper.md, "The experiments", 2), for any simulator that draws controllers.
+This is the paper's robustness experiment (docs/experiment.md, "The experiments"), for any simulator that
+draws controllers.
 """
 
 from __future__ import annotations
@@ -30,19 +31,19 @@ __all__ = [
     "draw_controller",
 ]
 
-_BATCH = 8  # controllers of one body: as many share what the solver prepares for it
-_BATCHES_PER_WORKER = 8  # between two looks at how far it is
+_BATCH = 8  # controllers of one body, which share the solver's preparation of the body
+_BATCHES_PER_WORKER = 8  # between two reports of progress
 
 
 @attrs.frozen(eq=False)
 class Candidate:
-    """A body that is to be measured.
+    """A body to measure.
 
     Attributes:
-        label: What a person calls it.
-        group: Which bodies it belongs to; its own label if to no others.
-        design: The body; its controller does not matter.
-        source: The file or directory that it is from.
+        label: Name of the body.
+        group: Name of its group; its own label if it is alone.
+        design: The body; its controller is ignored.
+        source: File or directory of the body.
     """
 
     label: str
@@ -53,31 +54,31 @@ class Candidate:
 
 @attrs.frozen
 class Body:
-    """A body that was measured.
+    """A measured body.
 
     Attributes:
-        label: What a person calls it.
-        group: Which bodies it belongs to; its own label if to no others.
-        digest: Of all roles that a random controller leaves as they are: the same for equal bodies.
-        source: The file or directory that it is from.
+        label: Name of the body.
+        group: Name of its group; its own label if it is alone.
+        digest: Digest of all roles that a random controller does not replace; equal for equal bodies.
+        source: File or directory of the body.
     """
 
     label: str
     group: str
     digest: str
-    source: str = attrs.field(eq=False)  # the same body from elsewhere is the same body
+    source: str = attrs.field(eq=False)  # copies of a body are equal
 
 
 @attrs.frozen
 class Setting:
-    """All that decides a measurement.
+    """The settings that determine the result of a measurement.
 
     Attributes:
-        seed: All controllers derive from it.
-        controllers: How many are drawn; a greater number has those of a smaller one, and more.
-        unit: Of the scores; empty if the objective does not say.
+        seed: Seed of all controllers.
+        controllers: Number of controllers; a larger number includes the controllers of a smaller one.
+        unit: Unit of the scores; empty if the objective does not define one.
         simulation: The tables ``simulator`` and ``objective``.
-        bodies: In the order of columns.
+        bodies: The bodies, in the order of columns.
     """
 
     seed: int = attrs.field(validator=validators.ge(0))
@@ -88,7 +89,7 @@ class Setting:
 
     @property
     def groups(self) -> dict[str, list[int]]:
-        """Name -> the columns of its bodies, in the order of their first ones."""
+        """Name of each group -> the columns of its bodies, in the order of the first column."""
         found: dict[str, list[int]] = {}
         for column, body in enumerate(self.bodies):
             found.setdefault(body.group, []).append(column)
@@ -97,11 +98,11 @@ class Setting:
 
 @attrs.frozen
 class Divergence:
-    """A simulation that has no score.
+    """A simulation that diverged, and has no score.
 
     Attributes:
-        controller: The row.
-        body: The column.
+        controller: Number of the controller: the row.
+        body: Number of the body: the column.
         step: The step at which it diverged.
     """
 
@@ -112,12 +113,12 @@ class Divergence:
 
 @attrs.frozen(eq=False)
 class Robustness:
-    """What bodies score with the same random controllers.
+    """Scores of bodies with the same random controllers.
 
     Attributes:
-        setting: What was measured.
+        setting: Setting of the measurement.
         scores: ``float64[controllers, bodies]``, in the objective's unit; NaN where a simulation diverged.
-        diverged: Those places, row by row.
+        diverged: The diverged simulations, row by row.
     """
 
     setting: Setting
@@ -126,37 +127,39 @@ class Robustness:
 
     @property
     def common(self) -> NDArray[np.intp]:
-        """The rows in which no body diverged: the only ones in which all can be compared."""
+        """The rows without divergence, in which all bodies can be compared."""
         return np.flatnonzero(np.isfinite(self.scores).all(axis=1))
 
     def values(self, columns: Sequence[int]) -> NDArray[np.float64]:
-        """Return all scores of some bodies, without those of simulations that diverged."""
+        """Return all scores of some bodies, without diverged simulations."""
         chosen = self.scores[:, columns].ravel()
         finite: NDArray[np.float64] = chosen[np.isfinite(chosen)]
         return finite
 
     def lost(self, columns: Sequence[int]) -> int:
-        """Return how many simulations of some bodies diverged."""
+        """Return the number of diverged simulations of some bodies."""
         return sum(divergence.body in columns for divergence in self.diverged)
 
 
 def draw_controller(
     simulator: SupportsRandomControllers, design: Design, seed: int, controller: int
 ) -> Design:
-    """Return a body with one of the controllers of a seed, whichever was drawn before.
+    """Return a body with a random controller, which depends only on seed and number.
 
     Raises:
-        ComponentError: The simulator failed, or returned no design.
+        ComponentError: The simulator failed, or did not return a design.
     """
     with blaming("simulator"):
         drawn = simulator.random_controller(design, stream(seed, f"robustness/{controller}"))
     if not isinstance(drawn, Design):
-        raise ComponentError("simulator", f"drew a controller that is no Design, but {type(drawn).__name__}")
+        raise ComponentError(
+            "simulator", f"random_controller must return a Design, but returned {type(drawn).__name__}"
+        )
     return drawn
 
 
 def digest_of(simulator: SupportsRandomControllers, design: Design) -> str:
-    """Return the digest of what remains of a design whatever controller is drawn for it."""
+    """Return the digest of the roles of a design that a random controller does not replace."""
     drawn = draw_controller(simulator, design, 0, 0)
     digest = hashlib.sha256()
     for role, array in sorted(design.roles.items()):
@@ -168,12 +171,12 @@ def digest_of(simulator: SupportsRandomControllers, design: Design) -> str:
 
 @attrs.frozen
 class Bench:
-    """What measures.
+    """The components of a measurement.
 
     Attributes:
         simulator: Draws the controllers, and simulates.
-        objective: Scores.
-        workers: Simulate at the same time; the results do not depend on them.
+        objective: Scores the outcomes.
+        workers: Workers of the executor; results do not depend on their number.
     """
 
     simulator: SupportsRandomControllers
@@ -186,13 +189,13 @@ class Bench:
         """Simulate bodies with the same random controllers.
 
         Args:
-            setting: What is measured.
-            designs: A design for each of its bodies.
-            on_progress: Called now and then with the number of simulations done since the last time.
+            setting: Setting of the measurement.
+            designs: A design for each body of the setting.
+            on_progress: Called repeatedly with the number of simulations finished since its last call.
 
         Raises:
             InputError: The simulator cannot simulate a body.
-            ComponentError: The simulator or the objective did not keep its word.
+            ComponentError: The simulator or the objective failed, or broke its contract.
         """
         scores = np.full((setting.controllers, len(designs)), np.nan)
         diverged: list[Divergence] = []
@@ -223,7 +226,7 @@ class Bench:
 
 @attrs.frozen(eq=False)
 class _Batch:
-    """One body with some of the controllers; they are drawn by the worker, which may be far away."""
+    """A body and the numbers of its controllers, which the worker draws so that they are not sent to it."""
 
     body: int
     label: str
@@ -237,7 +240,7 @@ class _Batch:
 
 @attrs.frozen
 class _Work:
-    """What a worker does with a batch."""
+    """The function that a worker applies to a batch."""
 
     simulator: SupportsRandomControllers
     objective: Objective
@@ -251,7 +254,7 @@ class _Work:
             ]
             return score_designs(self.simulator, designs, self.objective.record, self.objective)
         except (ConfigurationError, InputError) as error:
-            raise type(error)(f"{batch.label}: {error}") from error
+            raise type(error)(str(error), source=batch.label) from error
         except ComponentError as error:
             raise attrs.evolve(error, concerns=batch.about) from error
 

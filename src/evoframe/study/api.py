@@ -1,4 +1,4 @@
-"""Studies from Python: run what is missing, or find out what that would take."""
+"""Studies from Python: execute the missing runs, or estimate their time and disk space."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class StudyResult:
     Attributes:
         study: The study.
         directory: Its directory.
-        statuses: How far each run is, in the order of work.
-        rows: Row of each run that is finished or imported, in the order of work.
+        statuses: Status of each run, in the order of work.
+        rows: Row of each finished or imported run, in the order of work.
     """
 
     study: Study
@@ -42,17 +42,17 @@ class StudyResult:
 
     @property
     def failed(self) -> dict[Planned, str]:
-        """The runs that have failed, with the cause of each."""
+        """The failed runs, with the cause of each."""
         return {run: status.cause for run, status in self.statuses.items() if status.state == "failed"}
 
     @property
     def left(self) -> list[Planned]:
-        """The runs that are not finished and verified: failed, interrupted, or left to another process."""
+        """The runs not yet finished and verified: failed, interrupted, or in progress in another process."""
         return [run for run, status in self.statuses.items() if not status.is_complete]
 
     @property
     def finished(self) -> dict[Planned, Row]:
-        """The rows of the runs that are finished in this directory, not imported."""
+        """The rows of the runs finished in this directory, without the imported ones."""
         return {run: row for run, row in self.rows.items() if self.statuses[run].state == "finished"}
 
     @property
@@ -61,20 +61,20 @@ class StudyResult:
         return [run for run in self.finished if not self.statuses[run].verified]
 
     def unfinished(self, *, retry: bool = False) -> list[Planned]:
-        """Return the runs to start or to resume; with *retry* those that failed, too."""
+        """Return the runs to start or resume; with *retry*, also the failed ones."""
         states = ("missing", "begun", "failed") if retry else ("missing", "begun")
         return [run for run, status in self.statuses.items() if status.state in states]
 
 
 @attrs.frozen
 class StudyPlan:
-    """What a study would run.
+    """The work that a study would do.
 
     Attributes:
-        found: What is there already.
-        to_run: The runs that would be started or resumed.
-        cores: The number of cores that would have something to do.
-        estimate: What the runs would take.
+        found: The current state of the study.
+        to_run: The runs to start or resume.
+        cores: Number of cores in use.
+        estimate: Time and disk space of these runs.
     """
 
     found: StudyResult
@@ -97,36 +97,36 @@ def run_study(  # noqa: PLR0913 - all but the first are keywords
     stop: Callable[[], bool] = lambda: False,
     **settings: Any,
 ) -> StudyResult:
-    """Run what is missing of a study, as the command ``evoframe study`` does.
+    """Execute the missing runs of a study, as the command ``evoframe study`` does.
 
-    Interrupted runs are resumed, and champions that were not verified are verified; what is finished stays as
-    it is. Each run has a process of its own: a script calls this under ``if __name__ == "__main__":``.
+    Interrupted runs are resumed, and unverified champions are verified; finished runs stay unchanged. Each
+    run has a process of its own, so a script must call this function under ``if __name__ == "__main__":``.
 
     Args:
-        study: Name of a study that comes with evoframe, path of a TOML file, or a study from
-            :func:`read_study`.
+        study: Name of a built-in study, path of a TOML file, or a study from :func:`read_study`.
         out: The study's directory; by default ``studies/<label>``.
         workers: Number of parallel runs; 0: one per core.
-        retry: Run what has failed once more.
+        retry: Repeat failed runs.
         tables: Paths of ``rows.csv`` of other sessions, whose rows count as finished runs.
-        modules: Local plugins, importable names or ``.py`` files, for this process and those of the runs.
-        plugins: The plugins to read the study with; by default those that are installed, and *modules*.
+        modules: Local plugins (importable names or ``.py`` files) for this process and the workers.
+        plugins: The plugins for reading the study; by default the installed ones and *modules*.
         watcher: Receives the progress.
-        stop: Asked several times a second whether to stop after the turns in progress.
-        **settings: Settings by key, as for :func:`evoframe.run`; ``runs`` and ``grid`` among them.
+        stop: Called several times a second; if true, the study stops after the turns in progress.
+        **settings: Settings by key, as for :func:`evoframe.run`, including ``runs`` and ``grid``; ``grid``
+            replaces the whole grid, a dotted key such as ``grid.aggregator`` one key of it.
 
     Returns:
-        All that there is of the study. A run that fails is reported there, and the others go on.
+        The state of the study. It includes the failed runs; a failure does not stop the other runs.
 
     Raises:
-        ConfigurationError: The study cannot be accepted; nothing was run or written.
-        InputError: The directory is that of something else, or a run or table in it is damaged.
+        ConfigurationError: The study is not valid; nothing was run or written.
+        InputError: The directory is not that of this study, or a run or table in it is damaged.
         RunError: A file of the study cannot be written.
-        KeyboardInterrupt: Runs were interrupted at once; what they have saved stays, and the rows of the
-            finished ones are written. Not raised if *stop* asks to stop anyway.
+        KeyboardInterrupt: The runs were interrupted at once; saved turns and the rows of finished runs are
+            kept. Not raised if *stop* is true anyway.
     """
     modules, paths, watcher = tuple(modules), [Path(path) for path in tables], watcher or Watcher()
-    study, directory = _opened(study, out, modules, plugins, settings)
+    study, directory = _open(study, out, modules, plugins, settings)
     claim(study, directory)
     with lock_tables(directory) if paths else contextlib.nullcontext():
         imported = (import_rows if paths else imported_rows)(study, directory, paths)
@@ -143,7 +143,7 @@ def run_study(  # noqa: PLR0913 - all but the first are keywords
             raise
     finally:
         settled = {run: statuses[run] for run in found.finished if statuses[run].is_complete}
-        with lock_tables(directory):  # so that the last process to write has seen what all of them made
+        with lock_tables(directory):  # so that the last process to write includes the runs of all others
             statuses = survey(study, directory, imported, rows=True, known=settled)
             rows = gather(statuses, imported)
             write_rows(list(rows.values()), directory / ROWS_FILE)
@@ -162,23 +162,25 @@ def plan_study(  # noqa: PLR0913 - as run_study
     plugins: Plugins | None = None,
     **settings: Any,
 ) -> StudyPlan:
-    """Return what :func:`run_study` would run, with estimated time and disk space; write nothing.
+    """Return the runs that :func:`run_study` would execute, with estimated time and disk space.
+
+    Nothing is written.
 
     Args:
-        study: As for :func:`run_study`, like all others.
+        study: As for :func:`run_study`, like all other arguments.
         out: The study's directory.
         workers: Number of parallel runs; 0: one per core.
-        retry: Run what has failed once more.
+        retry: Repeat failed runs.
         tables: Paths of ``rows.csv`` of other sessions.
         modules: Local plugins.
-        plugins: The plugins to read the study with.
+        plugins: The plugins for reading the study.
         **settings: Settings by key.
 
     Raises:
-        ConfigurationError: The study cannot be accepted.
-        InputError: The directory is that of something else, or a run or table in it is damaged.
+        ConfigurationError: The study is not valid.
+        InputError: The directory is not that of this study, or a run or table in it is damaged.
     """
-    study, directory = _opened(study, out, tuple(modules), plugins, settings)
+    study, directory = _open(study, out, tuple(modules), plugins, settings)
     if directory.exists():
         refuse_another(study, directory)
     imported = imported_rows(study, directory, map(Path, tables))
@@ -190,7 +192,7 @@ def plan_study(  # noqa: PLR0913 - as run_study
     return StudyPlan(found, to_run, cores, estimate_cost(to_run, seconds))
 
 
-def _opened(
+def _open(
     study: str | Path | Study,
     out: str | Path | None,
     modules: tuple[str, ...],
@@ -201,5 +203,5 @@ def _opened(
     if not isinstance(study, Study):
         study = read_study(study, layers_of(settings), plugins or discover(modules))
     elif settings:
-        raise TypeError("a study is complete; give settings to read_study")
+        raise TypeError("a study that was read takes no settings; pass them to read_study")
     return study, Path("studies") / study.label if out is None else Path(out)

@@ -1,4 +1,4 @@
-"""The directory of a study, and the work that is done there."""
+"""The directory of a study, and the execution of its runs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from evoframe.files import (
 )
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.pool import End, Pool, end_of
-from evoframe.study.progress import Status, forget_failure, note_failure, status_of, with_remedy
+from evoframe.study.progress import Status, clear_failure, record_failure, status_of, with_remedy
 from evoframe.study.rows import Row
 from evoframe.study.worker import INTERVAL, Order
 
@@ -36,81 +36,92 @@ _LOCK_FILE = "study.lock"
 
 
 class Watcher:
-    """Receives the progress of a study, and ignores it: override what you need."""
+    """A receiver of a study's progress that ignores it; subclasses override the methods they need."""
 
     def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
-        """Receive what will be run or verified, and the rows of what needs no work."""
+        """Receive the runs to execute or verify, and the rows of those that need no work."""
 
     def on_run_started(self, planned: Planned) -> None:
-        """Receive a run on which work begins."""
+        """Receive a run that starts or resumes."""
 
     def on_turn_finished(self, planned: Planned, turn: int, best: float | None) -> None:
-        """Receive a run's latest turn, and its best score since work on it began."""
+        """Receive a run's latest turn, and its best score since it started or resumed."""
 
     def on_run_ended(self, planned: Planned, end: End) -> None:
-        """Receive how work on a run has ended."""
+        """Receive the outcome of a run."""
 
     def on_tick(self) -> None:
         """Update a display; called several times a second."""
 
 
 def claim(study: Study, directory: Path) -> None:
-    """Make the directory of a study, or note there what the study is now.
+    """Create the directory of a study, or update its ``study.toml``.
 
     Raises:
-        InputError: As :func:`refuse_another`, or it cannot be made.
-        RunError: It cannot be written.
+        InputError: As for :func:`refuse_another`, or the directory cannot be created.
+        RunError: The directory is not writable.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
-    refuse_another(study, directory)  # what is somebody else's gets no lock
+        raise InputError(
+            f"cannot create the directory of a study: {error.strerror}", source=directory
+        ) from error
+    refuse_another(study, directory)  # before the lock, which would write to somebody else's directory
     with lock_tables(directory):
         refuse_another(study, directory)  # again: another process may have been faster
         write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
 
 
 def lock_tables(directory: Path) -> contextlib.AbstractContextManager[None]:
-    """Keep other processes from writing the files that all runs of a study share.
+    """Lock the files that all runs of a study share against other processes.
 
     Args:
-        directory: The directory of the study; :func:`claim` makes it.
+        directory: The directory of the study; :func:`claim` creates it.
 
     Raises:
-        InputError: It cannot be written.
+        InputError: The directory is not writable.
     """
     return locked_after_others(directory / _LOCK_FILE)
 
 
 def refuse_another(study: Study, directory: Path) -> None:
-    """Make sure that a directory is empty, or that of this study.
+    """Check that a directory is empty, or that of this study.
 
-    More runs and more values of the grid are welcome, fewer are not; all other settings must be those that it
-    has.
+    Runs and values of the grid may be added but not removed; all other settings must be equal.
 
     Raises:
-        InputError: It is the directory of another study, or of something else, or has more.
+        InputError: The directory belongs to another study or to something else, or removing runs would lose
+            results.
     """
     path = directory / STUDY_FILE
-    try:  # processes that begin a study leave more than nothing before its file
+    try:  # a process that starts a study writes the lock and a temporary file before study.toml
         occupied = any(each.name != _LOCK_FILE and not is_leftover(each) for each in directory.iterdir())
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a study: {error.strerror}") from error
-    if path.is_file():  # only now: another process makes it before anything else
+        raise InputError(
+            f"cannot read the directory of a study: {error.strerror}", source=directory
+        ) from error
+    if path.is_file():  # checked last: another process writes it before anything else
         there = parsed_toml(read_text(path, LARGEST_DOCUMENT), str(path))
         others = differences(_shared(there), _shared(_tables(study)))
         if others:
             listed = "\n  ".join(others)
-            raise InputError(f"{path}: is another study; choose another directory:\n  {listed}")
-        if gone := [*_gone(there, study)]:
+            raise InputError(
+                f"belongs to a study with other settings; choose another directory with --out:\n  {listed}",
+                source=path,
+            )
+        if gone := [*_removed(there, study)]:
             listed = "\n  ".join(gone)
             raise InputError(
-                f"{path}: has more than what is asked for, and would forget it; ask for all of it, or choose "
-                f"another directory with --out:\n  {listed}"
+                "runs cannot be removed from a study, so that no result is lost; request all of them, or "
+                f"choose another directory with --out:\n  {listed}",
+                source=path,
             )
     elif occupied:
-        raise InputError(f"{directory}: is not empty, and not the directory of a study; choose another")
+        raise InputError(
+            f"directory is not empty and has no {STUDY_FILE}; choose another directory with --out",
+            source=directory,
+        )
 
 
 def survey(
@@ -121,17 +132,17 @@ def survey(
     rows: bool = False,
     known: Mapping[Planned, Status] | None = None,
 ) -> dict[Planned, Status]:
-    """Return how far each run of a study is, in the order of work.
+    """Return the status of each run of a study, in the order of work.
 
     Args:
         study: The study.
         directory: Its directory.
-        imported: Rows that came from elsewhere, which count where the run is not finished here.
-        rows: Whether to read the row of each finished run, too, while the run is open.
-        known: What was found before of runs on which nothing is left to do; these are not opened again.
+        imported: Imported rows, which count for runs that are not finished in *directory*.
+        rows: Whether to read the row of each finished run too.
+        known: Statuses of completed runs from an earlier survey; these runs are not opened again.
 
     Raises:
-        InputError: One of them is damaged, or of another study.
+        InputError: A run is damaged, or belongs to another study.
     """
     imported, known, found = imported or {}, known or {}, {}
     for planned in study.planned(directory):
@@ -144,23 +155,23 @@ def survey(
 
 
 def execute(orders: Mapping[Planned, Order], pool: Pool, watcher: Watcher, stop: Callable[[], bool]) -> None:
-    """Make runs, or go on with them, as many at a time as there are workers.
+    """Start or resume runs, as many in parallel as the pool has workers.
 
     Args:
-        orders: The runs, in the order of work, and what is said to the workers about each.
+        orders: The runs in the order of work, each with its order to a worker.
         pool: The workers.
         watcher: Receives the progress.
-        stop: Asked again and again whether to stop; what is running stops after its turn.
+        stop: Called several times a second; if true, runs in progress stop after their turn.
     """
     waiting = deque(orders)
     running: dict[Future[End], Planned] = {}
     while waiting or running:
         if stop():
             waiting.clear()
-            pool.ask_to_stop()
+            pool.request_stop()
         while waiting and len(running) < pool.workers:
             planned = waiting.popleft()
-            forget_failure(planned.directory)
+            clear_failure(planned.directory)
             running[pool.start(orders[planned])] = planned
             watcher.on_run_started(planned)
         ended, _ = concurrent.futures.wait(running, INTERVAL, FIRST_COMPLETED)
@@ -171,28 +182,28 @@ def execute(orders: Mapping[Planned, Order], pool: Pool, watcher: Watcher, stop:
         for future in ended:
             planned, end = running.pop(future), end_of(future)
             if end.state == "failed":
-                note_failure(planned.directory, end.cause)
+                record_failure(planned.directory, end.cause)
             watcher.on_run_ended(planned, end)
         watcher.on_tick()
 
 
 def _tables(study: Study) -> dict[str, Any]:
-    """Return the study as TOML tables that need no other file."""
+    """Return the study as TOML tables that extend no other file."""
     return {"extends": False, "runs": study.runs, **study.layers.merged(), "grid": dict(study.grid)}
 
 
 def _shared(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return what all runs of a study share, and what decides them."""
+    """Return the settings that all runs of a study share and that affect their results."""
     return {key: value for key, value in tables.items() if key not in ("runs", "grid", "executor")}
 
 
-def _gone(there: Mapping[str, Any], study: Study) -> Iterator[str]:
-    """Say what a study's file has and the study has not."""
+def _removed(there: Mapping[str, Any], study: Study) -> Iterator[str]:
+    """Yield a line for each setting of a study's file with more runs or values than the study has."""
     runs, grid = there.get("runs"), there.get("grid")
     if isinstance(runs, int) and study.runs < runs:
-        yield f"runs: {runs} there, {study.runs} now"
+        yield f"runs: {runs} before, {study.runs} requested"
     for key, values in grid.items() if isinstance(grid, Mapping) else ():
         now = {shown(value) for value in study.grid.get(key, ())}
         listed = values if isinstance(values, list) else []
         if gone := [shown(value) for value in listed if shown(value) not in now]:
-            yield f"grid.{key}: {', '.join(gone)} there, not now"
+            yield f"grid.{key}: {', '.join(gone)} before, not requested"

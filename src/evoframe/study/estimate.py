@@ -1,8 +1,9 @@
-"""What time and room the missing runs of a study take: from those that are there, or from a trial."""
+"""Estimates of time and disk space for the missing runs of a study, from finished runs or a trial."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 import attrs
 
@@ -11,43 +12,49 @@ from evoframe.study.plan import Planned
 
 __all__ = ["Estimate", "estimate_cost"]
 
-_BYTES = 200_000, 40  # of a run's directory: its state, and each pair with its share of the individuals
+_STATE_BYTES = 200_000  # of a run's directory
+_PAIR_BYTES = 40  # a pair's row, with its share of the individuals
 
 
 @attrs.frozen
 class Estimate:
-    """What the missing runs will take.
+    """Time and disk space of the missing runs.
 
     Attributes:
-        seconds: Of one core after the other.
-        megabytes: On the disk.
-        measured: What that was concluded from.
+        seconds: Sum of the core time of all missing runs, s.
+        megabytes: Disk space, MB.
+        measured: The source of the figures, such as ``3 finished runs``.
+        bound: ``at most`` if the figures are upper bounds, ``about`` if they are extrapolated from finished
+            runs.
     """
 
     seconds: float
     megabytes: float
     measured: str
+    bound: Literal["at most", "about"] = "at most"
 
 
 def estimate_cost(missing: Sequence[Planned], finished: Mapping[Planned, float]) -> Estimate:
-    """Return what the missing runs will take: at most that, where it is concluded from a trial.
+    """Estimate the time and disk space of the missing runs.
 
-    The costs of a run go with its pairs, although those that were simulated before cost little.
+    Costs are proportional to the number of pairs. If runs are finished, their measured cost per pair is used.
+    Without finished runs, a trial of one turn gives an upper bound: it counts every pair as simulated, though
+    a repeated pair costs little.
 
     Args:
-        missing: The runs.
-        finished: Runs that are there, and how many seconds each has taken.
+        missing: The runs to estimate.
+        finished: The finished runs, with the seconds that each has taken.
     """
     pairs = sum(run.cell.pairs for run in missing)
     if finished:
         share = pairs / sum(run.cell.pairs for run in finished)
         size = sum(path.stat().st_size for run in finished for path in run.directory.iterdir())
-        measured = f"{len(finished)} finished runs"
-        return Estimate(sum(finished.values()) * share, size * share / 1e6, measured)
+        measured = "1 finished run" if len(finished) == 1 else f"{len(finished)} finished runs"
+        return Estimate(sum(finished.values()) * share, size * share / 1e6, measured, "about")
     seconds_per_pair = 0.0
     if missing:
         with assemble(missing[0].cell.config) as coevolution:
-            work = next(iter(coevolution)).workload  # the initial meeting: few pairs are repeats
+            work = next(iter(coevolution)).workload  # the initial meeting, with few repeated pairs
             seconds_per_pair = work.seconds / work.pairs * coevolution.evaluator.workers.workers
-    size = len(missing) * _BYTES[0] + pairs * _BYTES[1]
+    size = len(missing) * _STATE_BYTES + pairs * _PAIR_BYTES
     return Estimate(seconds_per_pair * pairs, size / 1e6, "the first turn of one run")

@@ -1,4 +1,4 @@
-"""The rows of a study: of the runs in its directory, and of those that were made elsewhere."""
+"""The rows of a study: those of the runs in its directory, and those imported from other sessions."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write
 
 __all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
 
-_REPEATABLE = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # the same whoever made a run
+_REPEATABLE = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # equal on every machine
 
 _Key: TypeAlias = tuple[frozenset[tuple[str, str]], int]  # settings and number of a run
 
 IMPORTED = "imported"
-"""Folder in the directory of a study with the rows that came from elsewhere."""
+"""Folder in the directory of a study that holds the imported rows."""
 
 
 def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> dict[Planned, Row]:
-    """Keep rows from elsewhere as those of finished runs of a study.
+    """Import rows of other sessions; they count as finished runs of a study.
 
     Args:
         study: The study.
         directory: Its directory; no other process may import rows at the same time.
-        paths: Tables as a study writes them, each perhaps with its curves beside it.
+        paths: Paths of ``rows.csv`` of other sessions; ``curves.csv`` in the same folder is optional.
 
     Returns:
-        All rows that were imported, as :func:`imported_rows`.
+        All imported rows, as :func:`imported_rows`.
 
     Raises:
-        InputError: A row is of no run of this study, or contradicts another of the same run; says which.
+        InputError: A row belongs to no run of this study, or contradicts another row of the same run.
     """
     planned = _by_key(study, directory)
     rows = _joined(planned, directory, paths)
@@ -45,33 +45,41 @@ def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> dict[Pl
 
 
 def _joined(planned: Mapping[_Key, Planned], directory: Path, paths: Iterable[Path]) -> list[Row]:
-    """Return the rows that were imported before, and those of more tables."""
+    """Return the rows imported before, and those of more tables."""
     before = directory / IMPORTED / ROWS_FILE
     kept = {_key(row): row for row in (read_rows(before) if before.is_file() else ())}
     for path in paths:
         for row in read_rows(path):
             run = planned.get(_key(row))
             if run is None:
-                raise InputError(f"{path}: {_named(row)}: is no run of this study")
+                raise InputError(
+                    "this study has no such run; check the study's grid and number of runs",
+                    source=path,
+                    key=_named(row),
+                )
             _refuse_another(row, run, path)
             earlier = kept.get(_key(row), row)
             if differing := [name for name in _REPEATABLE if getattr(earlier, name) != getattr(row, name)]:
-                what = " and ".join(differing)
-                raise InputError(f"{path}: {_named(row)}: another {what} than in the rows imported before")
-            kept[_key(row)] = earlier if earlier.fitness_curve else row  # which may have curves
+                raise InputError(
+                    "contradicts the row imported before: "
+                    + "; ".join(f"{n} was {getattr(earlier, n)}, is {getattr(row, n)}" for n in differing),
+                    source=path,
+                    key=_named(row),
+                )
+            kept[_key(row)] = earlier if earlier.fitness_curve else row  # the new row may have curves
     return list(kept.values())
 
 
 def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> dict[Planned, Row]:
-    """Return the rows that were imported, by the run that they are of; those of other cells wait.
+    """Return the imported rows by run; rows of cells that the study does not have are skipped.
 
     Args:
         study: The study.
         directory: Its directory.
-        more: Tables that could be imported too.
+        more: Further tables to read without importing them.
 
     Raises:
-        InputError: They are damaged, or were made otherwise than this study makes them.
+        InputError: A table is damaged, or a row has another configuration or seed than this study.
     """
     planned = _by_key(study, directory)
     return _of_runs(_joined(planned, directory, more), planned, directory)
@@ -92,7 +100,7 @@ def _key(row: Row) -> _Key:
 
 
 def _by_key(study: Study, directory: Path) -> dict[_Key, Planned]:
-    """Return the runs that are planned, by the keys of their rows."""
+    """Return the planned runs by the keys of their rows."""
     settings = {cell: frozenset((key, shown(value)) for key, value in cell.settings) for cell in study.cells}
     return {(settings[run.cell], run.index): run for run in study.planned(directory)}
 
@@ -102,11 +110,11 @@ def _named(row: Row) -> str:
 
 
 def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) -> dict[Planned, Row]:
-    """Return the rows of all runs that are done, in the order of work.
+    """Return the rows of all finished or imported runs, in the order of work.
 
     Args:
-        statuses: How far each run is; rows that the survey has not read are read now.
-        imported: The rows that came from elsewhere.
+        statuses: Status of each run; rows that the survey has not read are read now.
+        imported: The imported rows.
 
     Raises:
         InputError: The directory of a run is damaged.
@@ -126,5 +134,8 @@ def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) 
 def _refuse_another(row: Row, run: Planned, path: Path) -> None:
     if row.seed != run.seed or row.configuration != digest(run):
         raise InputError(
-            f"{path}: {_named(row)}: was made with another configuration or seed than this study has"
+            f"has configuration {row.configuration} and seed {row.seed}; this study has configuration "
+            f"{digest(run)} and seed {run.seed}",
+            source=path,
+            key=_named(row),
         )

@@ -1,4 +1,4 @@
-"""What the cells of a study are called in an article."""
+"""Names of a study's cells in tables and figures."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ __all__ = ["called", "headings", "name_of", "title_of"]
 
 
 def called(value: str) -> str:
-    """Return what a value of the grid is called: an average is AM, as the paper writes it."""
+    """Return the name of a value of the grid: averages are in capitals (AM), as in the paper."""
     return value.upper() if len(value) == 2 else value
 
 
 def headings(keys: Collection[str]) -> dict[str, str]:
-    """Return what each dotted key is called: its last part, or as many as tell it from the others."""
+    """Return the name of each dotted key: its last part, or more parts if other keys end alike."""
     return {key: _shortest(key, [other for other in keys if other != key]) for key in keys}
 
 
 def title_of(settings: Mapping[str, str], names: Mapping[str, str]) -> str:
-    """Return what cells have in common that share these settings: ``n = 2``.
+    """Return the title of the cells that share these settings, such as ``n = 2``.
 
     Args:
         settings: Dotted key -> value.
-        names: What the keys are called.
+        names: Dotted key -> its name.
     """
     return ", ".join(f"{names[key]} = {value}" for key, value in settings.items())
 
 
 def name_of(settings: Mapping[str, str]) -> str:
-    """Return what a cell is called among all others: ``WM (n = 2)``; empty if it has no settings."""
+    """Return the name of a cell, such as ``WM (n = 2)``; empty if it has no settings."""
     *others, last = [*settings] or [""]
     title = title_of({key: settings[key] for key in others}, headings(settings))
     name = called(settings.get(last, ""))

@@ -1,4 +1,4 @@
-"""What a study consists of: its cells, the seeds of its runs, and where each of them lies."""
+"""Studies as read from TOML: their cells, and the seeds and directories of their runs."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ Settings: TypeAlias = tuple[tuple[str, Any], ...]
 _KEY = re.compile(r"[a-z0-9_-]+(\.[a-z0-9_-]+)*")
 _PLAIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,60}")
 _OWN_KEYS = {
-    "runs": "how often each configuration is run",
-    "grid": "a table of keys, each with a list of values",
+    "runs": "the number of runs of each configuration, as in runs = 10",
+    "grid": 'a table of keys, each with a list of values, as in aggregator = ["am", "wm"]',
 }
 _MOST_RUNS = 1_000_000
 
 
 @attrs.frozen(eq=False)
 class Cell:
-    """One configuration of a study.
+    """A configuration of a study.
 
     Attributes:
-        settings: What distinguishes it from the others.
-        config: All of it; the seed is that of the study.
+        settings: The settings of the grid that define this cell.
+        config: The complete configuration, with the study's base seed.
     """
 
     settings: Settings
@@ -52,7 +52,7 @@ class Cell:
 
     @property
     def label(self) -> str:
-        """What a person calls it: ``aggregator=am, collaboration.n=2``."""
+        """Name in messages, such as ``aggregator=am, collaboration.n=2``."""
         return ", ".join(f"{key}={shown(value)}" for key, value in self.settings) or "all"
 
     @property
@@ -62,40 +62,40 @@ class Cell:
 
     @property
     def values(self) -> list[str]:
-        """What distinguishes it, as text, in the order of the grid."""
+        """The values of its settings as text, in the order of the grid."""
         return [shown(value) for _, value in self.settings]
 
     @property
     def folder(self) -> Path:
-        """Where its runs lie in the directory of the study: a level for each key."""
+        """Path of its runs within the directory of the study, with a level for each key."""
         return Path(*(f"{key}={_plain(value)}" for key, value in self.settings))
 
     @functools.cached_property
     def pairs(self) -> int:
-        """How many pairs a run scores, repeats included, the meeting at the end apart."""
+        """Number of pairs that a run scores, including repeats, without the final meeting."""
         sizes = [population.size for population in self.config.populations.values()]
         strategy = self.config.collaboration.component
         generation = 0
         for index, size in enumerate(sizes):
-            # Several other populations give the same number of collaborators: a configuration is checked.
+            # All other populations give the same number of teams: the configuration was validated.
             [teams] = {strategy.size(other) for i, other in enumerate(sizes) if i != index}
             generation += size * teams
         return len(first_meetings(sizes)) + self.config.run.generations * generation
 
     def seed(self, index: int) -> int:
-        """Return the seed of one of its runs, which depends on nothing else in the study."""
+        """Return the seed of a run; it does not depend on the other cells or on the number of runs."""
         name = _identity([dict(self.settings), self.config.run.seed, index])
         return int.from_bytes(hashlib.sha256(name.encode()).digest()[:6], "little")
 
 
 @attrs.frozen
 class Planned:
-    """One run of a study, known by its directory.
+    """A run of a study, identified by its directory.
 
     Attributes:
         cell: Its configuration.
-        index: Which of the runs of its cell, from 0 up.
-        directory: Where it lies.
+        index: Number of the run within its cell, from 0.
+        directory: Its directory.
     """
 
     cell: Cell = attrs.field(eq=False)
@@ -104,30 +104,30 @@ class Planned:
 
     @property
     def seed(self) -> int:
-        """Its seed."""
+        """The seed of the run."""
         return self.cell.seed(self.index)
 
     @property
     def label(self) -> str:
-        """What a person calls it."""
+        """Name in messages, such as ``aggregator=am, run 0``."""
         return f"{self.cell.label}, run {self.index}"
 
     def deciding(self) -> Tree:
-        """Return the tables on which its result depends, as its own record has them."""
+        """Return the tables that determine its result, in the form of the run's own record."""
         config = attrs.evolve(self.cell.config, run=attrs.evolve(self.cell.config.run, seed=self.seed))
         return config.deciding()
 
 
 @attrs.frozen
 class Study:
-    """A study that was read and checked.
+    """A study, read and validated.
 
     Attributes:
         layers: The settings that all cells share.
-        label: What a person calls it.
-        grid: Dotted key -> the values that it takes.
-        runs: How often each cell is run.
-        cells: All combinations, the last key changing fastest.
+        label: Name of the study: the file name without its extension.
+        grid: Dotted key -> its values.
+        runs: Number of runs of each cell.
+        cells: All combinations of values; the last key changes fastest.
     """
 
     layers: Layers = attrs.field(repr=False)
@@ -138,24 +138,24 @@ class Study:
 
     @property
     def headings(self) -> list[str]:
-        """What a table calls the keys of the grid: the last part of each, where that is enough."""
+        """Column headings of the grid's keys, shortened as by :func:`~evoframe.study.names.headings`."""
         return [*headings(self.grid).values()]
 
     def planned(self, directory: Path) -> Iterator[Planned]:
-        """Yield all runs in the order of work: the first of every cell, then the second of every cell."""
+        """Yield all runs in the order of work: the first run of every cell, then the second of every cell."""
         for index in range(self.runs):
             for cell in self.cells:
                 yield Planned(cell, index, directory / cell.folder / f"{index:02}")
 
     def layers_of(self, planned: Planned) -> Layers:
-        """Return the configuration of one run, as it is resolved."""
+        """Return the layers of configuration of a run."""
         return self.layers.under(
             [*_layers(planned.cell.settings), layer_of("the study", "run.seed", planned.seed)]
         )
 
 
 def study_names() -> list[str]:
-    """Return the names of the studies that come with evoframe."""
+    """Return the names of the built-in studies."""
     entries = files("evoframe.study").joinpath("studies").iterdir()
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
@@ -163,29 +163,34 @@ def study_names() -> list[str]:
 def read_study(
     source: str | Path, overrides: Iterable[str | Layer] = (), plugins: Plugins | None = None
 ) -> Study:
-    """Read and check a study, all of its cells.
+    """Read a study and validate all of its cells.
 
     Args:
-        source: Path of a TOML file, or the name of a study that comes with evoframe.
-        overrides: As for :func:`~evoframe.load_config`; ``runs`` and ``grid`` can be set too.
-        plugins: The plugins to choose from; by default those that are installed.
+        source: Path of a TOML file, or the name of a built-in study.
+        overrides: As for :func:`~evoframe.load_config`, including ``runs`` and ``grid``. ``grid={...}``
+            replaces the whole grid; ``grid.KEY=[...]`` sets the values of one key.
+        plugins: The plugins to choose from; by default the installed ones.
 
     Raises:
         ConfigurationError: With all faults of the first cell that has any.
     """
-    read = read_layers(_file_of(source), overrides)
+    read = _with_overrides(_file_of(source), overrides)
     tree = read.merged()
-    for key, what in _OWN_KEYS.items():
+    for key, expected in _OWN_KEYS.items():
         if key not in tree:
-            raise ConfigurationError(f"{source}: {key}: is missing: {what}")
+            raise ConfigurationError(f"missing; expected {expected}", source=source, key=key)
     origin, runs = read.origin(("grid",)), tree["runs"]
     if isinstance(runs, bool) or not isinstance(runs, int) or runs < 1:
-        where, expected = read.origin(("runs",)), "expected a whole number from 1 up"
-        raise ConfigurationError(f"{where}: runs: {expected}, found {found(runs)}")
+        raise ConfigurationError(
+            f"expected a whole number >= 1, found {found(runs)}", source=read.origin(("runs",)), key="runs"
+        )
     grid = _grid(tree["grid"], origin)
     size = runs * math.prod(len(values) for values in grid.values())
     if size > _MOST_RUNS:
-        raise ConfigurationError(f"{origin}: a study of {size} runs; at most {_MOST_RUNS}")
+        raise ConfigurationError(
+            f"the study has {size} runs, expected at most {_MOST_RUNS}; reduce runs or the grid",
+            source=origin,
+        )
     layers, label, plugins = read.without(*_OWN_KEYS), Path(source).stem, plugins or discover()
     cells = []
     for values in itertools.product(*grid.values()):
@@ -196,6 +201,21 @@ def read_study(
     return Study(layers, label, grid, runs, tuple(cells))
 
 
+def _with_overrides(source: str | Path, overrides: Iterable[str | Layer]) -> Layers:
+    """Read a study's file and apply the overrides; the last whole grid among them replaces all before it."""
+    given = overrides if isinstance(overrides, str) else list(overrides)  # a string is refused below
+    places = [place for place, override in enumerate(given) if _is_whole_grid(override)]
+    if not places:
+        return read_layers(source, given)
+    return read_layers(source, given[: places[-1]]).without("grid").under(given[places[-1] :])
+
+
+def _is_whole_grid(override: str | Layer) -> bool:
+    """Return whether an override is ``grid={...}``, and not ``grid.KEY=[...]``."""
+    text = override.origin if isinstance(override, Layer) else override
+    return text.partition("=")[0].strip() == "grid"
+
+
 def _file_of(source: str | Path) -> str | Path:
     if source in study_names():
         with_path: Any = files("evoframe.study").joinpath("studies", f"{source}.toml")
@@ -204,30 +224,42 @@ def _file_of(source: str | Path) -> str | Path:
         known = study_names()
         raise ConfigurationError(
             f"there is no study '{source}'{suggestion(str(source), known, 'studies')}; "
-            "a file needs the ending .toml"
+            "the name of a file must end with .toml"
         )
     return source
 
 
 def _grid(table: Any, origin: str) -> dict[str, tuple[Any, ...]]:
-    """Return the grid; a quoted dotted key and a table within a table mean the same."""
+    """Return the grid; a quoted dotted key is equivalent to nested tables."""
     axes = list(_axes(table, (), origin))
     grid = dict(axes)
     for one, other in itertools.combinations(sorted(key for key, _ in axes), 2):
         if other.startswith(f"{one}."):
-            raise ConfigurationError(f"{origin}: grid: {other}: is a part of {one}, which is there too")
+            raise ConfigurationError(
+                f"the grid also has '{one}', which includes this key; remove one of them",
+                source=origin,
+                key=f"grid.{other}",
+            )
     for key, values in grid.items():
         if key == "run.seed":
-            raise ConfigurationError(f"{origin}: grid: run.seed: seeds are derived; say with runs how many")
+            raise ConfigurationError(
+                "seeds are derived from the study; set the number of runs instead, as in runs = 10",
+                source=origin,
+                key="grid.run.seed",
+            )
         if key == "run":  # may set the seed too
             raise ConfigurationError(
-                f"{origin}: grid: run: is a column of the study's tables already; give its settings one by "
-                "one, as in run.generations = [100, 200]"
+                "'run' is a column of rows.csv; vary a setting of the table, as in "
+                "run.generations = [100, 200]",
+                source=origin,
+                key="grid.run",
             )
         texts = [shown(value) for value in values]
         if not values or len(set(texts)) < len(texts):
             raise ConfigurationError(
-                f"{origin}: grid.{key}: expected different values, found {found(list(values))}"
+                f"expected one or more different values, found {found(list(values))}",
+                source=origin,
+                key=f"grid.{key}",
             )
     return grid
 
@@ -235,11 +267,15 @@ def _grid(table: Any, origin: str) -> dict[str, tuple[Any, ...]]:
 def _axes(table: Any, path: tuple[str, ...], origin: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
     if not isinstance(table, Mapping):
         where = ".".join(("grid", *path))
-        raise ConfigurationError(f"{origin}: {where}: expected a list of values, found {found(table)}")
+        raise ConfigurationError(f"expected a list of values, found {found(table)}", source=origin, key=where)
     for key, value in table.items():
         dotted = ".".join((*path, key))
         if not _KEY.fullmatch(dotted):
-            raise ConfigurationError(f"{origin}: grid: '{dotted}' is no key of a configuration")
+            raise ConfigurationError(
+                "is not a key of a configuration; expected one such as collaboration.n",
+                source=origin,
+                key=f"grid.{dotted}",
+            )
         if isinstance(value, list):
             yield dotted, tuple(value)
         else:
@@ -251,7 +287,7 @@ def _layers(settings: Settings, where: str = "") -> list[Layer]:
 
 
 def shown(value: Any) -> str:
-    """Return a value of the grid as text: another for each value of a key, or the grid is refused."""
+    """Return a value of the grid as text; no two values of a key may have the same text."""
     return value if isinstance(value, str) else _identity(value)
 
 
@@ -260,7 +296,7 @@ def _identity(value: Any) -> str:
 
 
 def _plain(value: Any) -> str:
-    """Return a value as the name of a folder, the same for the same value only."""
+    """Return a value as the name of a folder, unique for each value."""
     text = shown(value)
     if _PLAIN.fullmatch(text):
         return text

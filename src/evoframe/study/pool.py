@@ -1,4 +1,4 @@
-"""Processes that make the runs of a study, one run at a time each."""
+"""Worker processes that execute the runs of a study, each one run at a time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pebble
 
 from evoframe.errors import LockedError
 from evoframe.messages import cause_of
-from evoframe.study.worker import Order, Talk, perform
+from evoframe.study.worker import Channel, Order, perform
 from evoframe.workers import WorkerProcesses
 
 __all__ = ["End", "News", "Pool", "end_of"]
@@ -25,12 +25,13 @@ News: TypeAlias = tuple[Path, int, float | None]
 
 @attrs.frozen
 class End:
-    """How work on a run ended.
+    """Outcome of a worker's order.
 
     Attributes:
-        state: ``finished``; ``stopped`` on demand; ``elsewhere`` where another process is at it; ``failed``.
-        cause: Why it failed.
-        score: That of its best pair, if it is finished.
+        state: ``finished``; ``stopped`` on request; ``elsewhere`` if another process executes the run;
+            ``failed``.
+        cause: Cause of the failure.
+        score: Score of the best pair of a finished run.
     """
 
     state: Literal["finished", "stopped", "elsewhere", "failed"]
@@ -39,84 +40,84 @@ class End:
 
 
 class Pool:
-    """Workers that are ready.
+    """Worker processes of a study.
 
-    Workers and this process share no lock: one that is killed while it has it would stop all others.
+    Workers and this process share no lock: a worker killed while holding it would block all others.
 
     Attributes:
-        workers: How many there are.
+        workers: Number of workers.
     """
 
     def __init__(self, workers: int) -> None:
         self.workers = workers
         context = WorkerProcesses.context
-        self._news, self._tell = context.Pipe(duplex=False)
-        self._asked, self._stop = context.Pipe(duplex=False)
+        self._news, self._sender = context.Pipe(duplex=False)
+        self._requested, self._stop = context.Pipe(duplex=False)
         self._orders: list[Order] = []
-        self._processes = self._started()
+        self._processes = self._start_workers()
 
     def start(self, order: Order) -> Future[End]:
-        """Let a worker make a run as soon as one is free."""
-        if not self._processes.active:  # all of them were lost at once
+        """Queue a run for the next free worker."""
+        if not self._processes.active:  # all workers were lost at once
             self._processes.close()
-            self._processes = self._started()
+            self._processes = self._start_workers()
         self._orders.append(order)
         return self._processes.schedule(_work, [len(self._orders) - 1, order])
 
-    def _started(self) -> WorkerProcesses:
-        return WorkerProcesses(self.workers, _begin, [self._tell, self._asked])
+    def _start_workers(self) -> WorkerProcesses:
+        return WorkerProcesses(self.workers, _initialize, [self._sender, self._requested])
 
     def news(self) -> Iterator[News]:
-        """Yield what the workers have told since the last time."""
+        """Yield the progress that the workers have sent since the last call."""
         while self._news.poll():
             number, turn, best = self._news.recv()
             yield self._orders[number].directory, turn, best
 
-    def ask_to_stop(self) -> None:
-        """Let all workers stop after the turn in progress."""
+    def request_stop(self) -> None:
+        """Request all workers to stop after the turn in progress."""
         if not self._stop.closed:
-            self._stop.send(None)  # nobody receives it, so everybody sees that there is something
+            self._stop.send(None)  # no worker receives it, so that poll() is true in all of them
             self._stop.close()
 
     def close(self) -> None:
-        """End the workers, whatever they are doing: what they have saved stays."""
+        """Terminate the workers, also in the middle of a turn; saved turns are kept."""
         self._processes.close()
-        for end in (self._news, self._tell, self._asked, self._stop):
+        for end in (self._news, self._sender, self._requested, self._stop):
             end.close()
 
 
 def end_of(future: Future[End]) -> End:
-    """Return how work ended, also where it took its process along."""
+    """Return the outcome of an order, also if its worker process was lost."""
     try:
         return future.result()
     except pebble.ProcessExpired as error:
         return End("failed", f"its process ended with {WorkerProcesses.ending(error)}")
     except BrokenProcessPool:
-        return End("failed", "there was no process to make it: all of them were ended, or cannot be started")
+        return End("failed", "no worker process left: all of them ended, or none could be started")
 
 
 _ends: list[tuple[Connection, Connection]] = []
-"""Of the pipes of this process, if it is a worker: where it tells, and where it is asked to stop."""
+"""Ends of a worker's pipes: the first sends progress, the second receives the request to stop."""
 
 
-def _begin(tell: Connection, asked: Connection) -> None:
-    _ends.append((tell, asked))
+def _initialize(sender: Connection, requested: Connection) -> None:
+    _ends.append((sender, requested))
 
 
-def _talk(number: int) -> Talk:
-    """Return how the worker talks about one of the orders.
+def _channel(number: int) -> Channel:
+    """Return the worker's channel for an order.
 
-    All workers write to one pipe: a message that is so short is written whole or not at all.
+    All workers write to one pipe: a message this short is written atomically.
     """
-    tell, asked = _ends[0]
-    return Talk(lambda turn, best: tell.send((number, turn, best)), asked.poll)
+    sender, requested = _ends[0]
+    return Channel(lambda turn, best: sender.send((number, turn, best)), requested.poll)
 
 
 def _work(number: int, order: Order) -> End:
     try:
-        run = perform(order, _talk(number))
+        run = perform(order, _channel(number))
         return End("stopped") if run is None else End("finished", score=run.summary()["best_pair_score"])
     except LockedError:
         return End("elsewhere")
-    except Exception as error:  # noqa: BLE001 - the other runs of a study go on, and this one says why not
+    except Exception as error:  # noqa: BLE001 - a failure, with its cause, must not stop the other runs
         return End("failed", cause_of(error))

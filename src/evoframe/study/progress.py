@@ -1,4 +1,4 @@
-"""How far the runs of a study are."""
+"""Status of the runs of a study."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from evoframe.runs import is_verified
 from evoframe.study.plan import Planned
 from evoframe.study.rows import Row, row_of
 
-__all__ = ["FAILURE_FILE", "REMEDY", "Status", "forget_failure", "note_failure", "status_of", "with_remedy"]
+__all__ = ["FAILURE_FILE", "REMEDY", "Status", "clear_failure", "record_failure", "status_of", "with_remedy"]
 
-REMEDY = "a run whose directory is removed is made again"
-"""What to do about one that is damaged."""
+REMEDY = "to repeat this run, remove its directory and rerun the study"
+"""Hint for a damaged run."""
 
 FAILURE_FILE = "failure.json"
-"""In the directory of a run that failed: why."""
+"""File with the cause, in the directory of a failed run."""
 
 State: TypeAlias = Literal["missing", "begun", "failed", "finished", "imported"]
 
 
 @attrs.frozen
 class Status:
-    """How far a run is.
+    """Status of a run.
 
     Attributes:
-        state: ``missing``, ``begun``, ``failed``, ``finished``, or ``imported``: its row came from elsewhere.
-        cause: Why it failed.
-        verified: Where it is finished: whether its champion was verified, or cannot be.
-        row: Its row, where it is done and the row was read.
+        state: ``missing``, ``begun``, ``failed``, ``finished``, or ``imported`` from another session.
+        cause: Cause of a failure.
+        verified: False for a finished run whose champion is still to be verified.
+        row: Row of a finished or imported run, if it was read.
     """
 
     state: State
@@ -45,36 +45,36 @@ class Status:
 
     @property
     def is_done(self) -> bool:
-        """Whether there is a row of it."""
+        """True if the run has a row."""
         return self.state in ("finished", "imported")
 
     @property
     def is_complete(self) -> bool:
-        """Whether nothing is left to do."""
+        """True if the run is done and verified."""
         return self.is_done and self.verified
 
 
 @contextlib.contextmanager
 def with_remedy() -> Iterator[None]:
-    """Add to an error about a damaged run what to do."""
+    """Add the hint to errors about a damaged run."""
     try:
         yield
     except LockedError:
-        raise  # nothing is damaged
+        raise  # the run is locked, not damaged
     except InputError as error:
         error.add_note(REMEDY)
         raise
 
 
 def status_of(planned: Planned, *, with_row: bool = False) -> Status:
-    """Return how far a run is.
+    """Return the status of a run.
 
     Args:
         planned: The run.
-        with_row: Whether to read its row, too, if it is finished.
+        with_row: Whether to read the row of a finished run too.
 
     Raises:
-        InputError: Its directory is damaged, or holds the run of another study.
+        InputError: Its directory is damaged, or holds a run of another study.
     """
     directory = planned.directory
     cause = _cause(directory / FAILURE_FILE)
@@ -87,8 +87,9 @@ def status_of(planned: Planned, *, with_row: bool = False) -> Status:
             return Status("begun")
         if run.configuration() != planned.deciding():
             raise InputError(
-                f"{directory}: is a run of another study: its configuration is not that of "
-                f"'{planned.label}'; choose another directory with --out"
+                f"belongs to another study: its configuration is not that of '{planned.label}'; choose "
+                "another directory with --out",
+                source=directory,
             )
         if not run.finished():
             return Status("begun")
@@ -96,13 +97,13 @@ def status_of(planned: Planned, *, with_row: bool = False) -> Status:
         return Status("finished", verified=verified, row=row_of(planned, run) if with_row else None)
 
 
-def note_failure(directory: Path, cause: str) -> None:
-    """Note why a run failed, so that it is not begun again before somebody asks for that.
+def record_failure(directory: Path, cause: str) -> None:
+    """Record the cause of a failed run, so that it starts again only with ``--retry``.
 
-    Nothing is noted where another process is at it already, nor where another one has noted its cause.
+    Nothing is recorded if another process executes the run, or has recorded a cause before.
 
     Raises:
-        InputError: The directory cannot be written.
+        InputError: The directory is not writable.
         RunError: The file cannot be written.
     """
     path = directory / FAILURE_FILE
@@ -112,13 +113,13 @@ def note_failure(directory: Path, cause: str) -> None:
             write_json(path, {"cause": cause})
 
 
-def forget_failure(directory: Path) -> None:
-    """Let a run that failed be tried again."""
+def clear_failure(directory: Path) -> None:
+    """Remove the record of a failure, so that the run starts again."""
     (directory / FAILURE_FILE).unlink(missing_ok=True)
 
 
 def _cause(path: Path) -> str | None:
-    """Return why a run failed; ``None`` if it has not, or another process has just begun it again."""
+    """Return the cause of a failed run; ``None`` if it has not failed or another process is retrying it."""
     try:
         return str(parsed_json(read_text(path, LARGEST_DOCUMENT))["cause"])
     except InputError as error:

@@ -1,4 +1,4 @@
-"""What is left of a run in a study: a row of final figures, and how they came about."""
+"""The tables of a study: a row of final figures for each run, and their curves over the generations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "
 
 ROWS_FILE = "rows.csv"
 CURVES_FILE = "curves.csv"
-"""Beside the rows: for each two lines, ``fitness`` and ``score``, with a number for each generation."""
+"""Table with two lines for each row, ``fitness`` and ``score``, with a value for each generation."""
 
 T = TypeVar("T")
 
@@ -32,20 +32,21 @@ class Row:
     """A finished run of a study.
 
     Attributes:
-        settings: Dotted key -> value as text: what distinguishes its cell from the others.
-        run: Which of the runs of its cell, from 0 up.
-        seed: Its seed.
-        configuration: Digest of all tables on which its result depends.
-        evoframe: The version that made it.
-        fitness: The best fitness in the last generation: an average of scores, with the collaborators there.
-        score: The score of the best pair that was simulated: the same yardstick for all cells.
-        fittest_pair_score: The score of the fittest of each population, as a pair.
-        pairs: How many pairs it needed.
-        simulations: How many of them were simulated: the others are repeats.
-        seconds: How long its turns took.
+        settings: Dotted key -> value as text: the settings of the grid that define its cell.
+        run: Number of the run within its cell, from 0.
+        seed: Seed of the run.
+        configuration: Digest of all tables that determine the result.
+        evoframe: Version of evoframe that executed the run.
+        fitness: Best fitness in the last generation; the aggregate of scores with that generation's
+            collaborators.
+        score: Score of the best pair, comparable between all cells.
+        fittest_pair_score: Score of the pair of each population's fittest individual.
+        pairs: Number of pairs scored.
+        simulations: Number of pairs simulated; the others are repeats.
+        seconds: Duration of all turns, s.
         champion: SHA-256 of champion.json.
-        fitness_curve: For each generation, from 0 up, the best fitness of any population.
-        score_curve: For each generation the score of the best pair so far.
+        fitness_curve: Best fitness of any population, for each generation from 0.
+        score_curve: Score of the best pair so far, for each generation from 0.
     """
 
     settings: Mapping[str, str]
@@ -67,7 +68,7 @@ class Row:
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"expected a number, found {text}")
+        raise ValueError(f"expected a finite number, found {text}")
     return value
 
 
@@ -87,20 +88,20 @@ _COLUMNS: Mapping[str, Callable[[str], Any]] = {
 
 
 def digest(planned: Planned) -> str:
-    """Return the digest of all tables on which the result of a run depends."""
+    """Return the digest of all tables that determine the result of a run."""
     text = json.dumps(planned.deciding(), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def row_of(planned: Planned, run: Run) -> Row:
-    """Return what is left of a finished run.
+    """Return the row of a finished run.
 
     Args:
-        planned: The run as it was planned.
-        run: The run as it is.
+        planned: The run in the study.
+        run: The finished run.
 
     Raises:
-        InputError: It is damaged.
+        InputError: The run is damaged.
     """
     work, summary = run.workload(), run.summary()
     fitness, score = _fitness_curve(run), score_curve(run, len(planned.cell.config.populations))
@@ -126,7 +127,7 @@ def _digest_of(path: Path) -> str:
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        raise InputError(f"cannot be read: {error.strerror}", source=path) from error
 
 
 def _fitness_curve(run: Run) -> tuple[float, ...]:
@@ -138,7 +139,7 @@ def _fitness_curve(run: Run) -> tuple[float, ...]:
 
 
 def score_curve(run: Run, populations: int) -> tuple[float, ...]:
-    """Return the best score so far at the end of each generation, in which every population has its turn."""
+    """Return the best score so far at the end of each generation, after a turn of every population."""
     ends = range(0, len(run.workload()), populations)
     found = run.table("best_pairs")
     return tuple(
@@ -147,10 +148,10 @@ def score_curve(run: Run, populations: int) -> tuple[float, ...]:
 
 
 def write_rows(rows: Sequence[Row], path: Path) -> None:
-    """Write rows as a table, and their curves beside it.
+    """Write rows as a table, and their curves as ``curves.csv`` in the same folder.
 
     Raises:
-        RunError: They cannot be written.
+        RunError: A file cannot be written.
     """
     keys = list(dict.fromkeys(key for row in rows for key in row.settings))
     figures = [[getattr(row, name) for name in _COLUMNS] for row in rows]
@@ -168,7 +169,7 @@ def write_rows(rows: Sequence[Row], path: Path) -> None:
 
 
 def _short(value: float) -> str:
-    """Return a value of a curve as it is written."""
+    """Return a value of a curve as text, with six significant digits."""
     return f"{value:.6g}"
 
 
@@ -176,11 +177,11 @@ def _settings(row: Row, keys: Iterable[str]) -> list[str]:
     return [row.settings.get(key, "") for key in keys]
 
 
-_LINE_END = "\r\n"  # what the writer looks for in a value that it must quote
+_LINE_END = "\r\n"  # so that the writer quotes values that contain either character
 
 
 def _csv(columns: Sequence[Any], lines: Iterable[Sequence[Any]]) -> bytes:
-    """Return a table whose lines end with a line feed, as ordinary tools like it."""
+    """Return a table whose lines end with a line feed, as Unix tools expect."""
     table = []
     for line in (columns, *lines):
         text = io.StringIO()
@@ -190,10 +191,10 @@ def _csv(columns: Sequence[Any], lines: Iterable[Sequence[Any]]) -> bytes:
 
 
 def read_rows(path: Path) -> list[Row]:
-    """Return the rows of a table, with their curves if these lie beside it.
+    """Return the rows of a table, with their curves if ``curves.csv`` is in the same folder.
 
     Raises:
-        InputError: It cannot be read, or is no such table; says where.
+        InputError: A file cannot be read, or is not a table of rows or curves.
     """
     curves = path.with_name(CURVES_FILE)
     drawn = _curves(curves) if curves.is_file() else {}
@@ -203,14 +204,15 @@ def read_rows(path: Path) -> list[Row]:
         try:
             figures = {name: kind(line[name]) for name, kind in _COLUMNS.items()}
         except ValueError as error:
-            raise InputError(f"{path}: line {number}: is no row of a study: {error}") from error
+            raise InputError(f"not a row of a study: {error}", source=path, key=f"line {number}") from error
         row = Row(settings, **figures)
         own = {name: drawn.get((tuple(settings.items()), row.run, name), ()) for name in ("fitness", "score")}
         for name, curve in own.items():
             if curve and _short(curve[-1]) != _short(getattr(row, name)):
                 raise InputError(
-                    f"{curves}: the {name} of line {number} of {path.name} does not end as that says: "
-                    f"{_short(curve[-1])} there, {_short(getattr(row, name))} here"
+                    f"{path.name}, line {number}: the {name} is {_short(getattr(row, name))}, but its curve "
+                    f"ends at {_short(curve[-1])}",
+                    source=curves,
                 )
         rows.append(attrs.evolve(row, fitness_curve=own["fitness"], score_curve=own["score"]))
     return rows
@@ -221,11 +223,11 @@ def _table(path: Path, columns: Collection[str]) -> list[dict[str, str]]:
         reader = csv.DictReader(io.StringIO(read_text(path, LARGEST_DOCUMENT)), strict=True)
         lines, there = list(reader), reader.fieldnames or ()
     except csv.Error as error:
-        raise InputError(f"{path}: is no table: {error}") from error
+        raise InputError(f"not a CSV table: {error}", source=path) from error
     if any(None in line or None in line.values() for line in lines):
-        raise InputError(f"{path}: is no table: its lines are of different lengths")
+        raise InputError("not a CSV table: its lines differ in the number of columns", source=path)
     if lacking := [name for name in columns if name not in there]:
-        raise InputError(f"{path}: is no table of a study: it has no column {', '.join(lacking)}")
+        raise InputError(f"not a table of a study: missing columns: {', '.join(lacking)}", source=path)
     return lines
 
 
@@ -240,5 +242,5 @@ def _curves(path: Path) -> dict[tuple[Any, ...], tuple[float, ...]]:
             values = tuple(float(line[key]) for key in generations if line[key])
             found[settings, int(line["run"]), line["curve"]] = values
         except (KeyError, ValueError) as error:
-            raise InputError(f"{path}: line {number}: is no curve of a study: {error}") from error
+            raise InputError(f"not a curve of a study: {error}", source=path, key=f"line {number}") from error
     return found

@@ -1,4 +1,4 @@
-"""What a process of a study does: one run after the other, each from where it was left."""
+"""Execution of a run by a worker process of a study."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from evoframe.registry import Plugins, discover, hookimpl
 from evoframe.runs import Execution, configuration_of, is_finished, prepare, reopen, verify_if_missing
 from evoframe.study.progress import with_remedy
 
-__all__ = ["INTERVAL", "Order", "Talk", "perform"]
+__all__ = ["INTERVAL", "Channel", "Order", "perform"]
 
 INTERVAL = 0.25
-"""Seconds between two things that are told of a run, and between two looks at what was told."""
+"""Interval of a run's progress reports, and of polling for them, s."""
 
 
 @attrs.frozen
 class Order:
-    """One run that shall be made.
+    """A run to execute.
 
     Attributes:
-        directory: Where to.
-        layers: Its configuration.
-        label: What a person calls the study.
+        directory: The run's directory.
+        layers: The run's configuration.
+        label: Name of the study.
         modules: Local plugins.
     """
 
@@ -42,76 +42,76 @@ class Order:
 
 
 @attrs.frozen
-class Talk:
-    """How a process of a study and the one that started it talk about a run.
+class Channel:
+    """Connection between a worker and the process that started it, for one run.
 
     Attributes:
-        tell: Takes the latest turn, and the best score since work on the run began.
-        stop: Says whether to stop after the turn in progress.
+        report: Sends the latest turn, and the best score since the run started or resumed.
+        stop: Returns whether to stop after the turn in progress.
     """
 
-    tell: Callable[[int, float | None], None]
+    report: Callable[[int, float | None], None]
     stop: Callable[[], bool]
 
 
-def perform(order: Order, talk: Talk) -> Run | None:
-    """Begin a run, or go on with it, and verify its champion.
+def perform(order: Order, channel: Channel) -> Run | None:
+    """Start or resume a run, and verify its champion.
 
     Returns:
         The finished run; ``None`` if it was stopped.
 
     Raises:
-        LockedError: Another process is at it.
-        EvoframeError: It cannot be made, cannot go on, or cannot be verified.
+        LockedError: Another process executes the run.
+        EvoframeError: The run cannot be started, resumed or verified.
     """
     plugins = discover(order.modules)
     executor: Any = type(resolve_layers(order.layers, order.label, plugins).executor.component)
     spreads = "workers" in attrs.fields_dict(executor)
-    # One core for each run: the others have runs of their own.
+    # One core for each run: the study's other workers occupy the other cores.
     alone = [layer_of("one worker for each run", "executor.workers", 1)] if spreads else []
-    execution = _begun(order, alone, plugins)
+    execution = _start(order, alone, plugins)
     if execution is None:
         with open_run(order.directory) as run:
             if is_finished(run):
                 verify_if_missing(run, configuration_of(run, alone, plugins))
                 return run
             execution = reopen(run, alone, plugins)
-    execution.plugins.manager.register(_Teller(talk), name="evoframe:study")
-    played = execution.play(talk.stop)
+    execution.plugins.manager.register(_Reporter(channel), name="evoframe:study")
+    played = execution.play(channel.stop)
     if not played.finished():
         return None
     execution.verify(played)
     return played
 
 
-def _begun(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
-    """Return a new run; ``None`` if there is one already."""
+def _start(order: Order, alone: Sequence[Layer], plugins: Plugins) -> Execution | None:
+    """Return a new run; ``None`` if the directory has one already."""
     if (order.directory / CONFIG_FILE).exists():
         return None
     config = resolve_layers(order.layers.under(alone), order.label, plugins)
     with with_remedy():
         try:
             return prepare(config, plugins, order.directory)
-        except OccupiedError:  # by another process, a moment ago
+        except OccupiedError:  # another process started it just now
             return None
         except NotEmptyError as error:
-            # A run of a study has its place: it is no help that another directory could be chosen.
-            raise NotEmptyError(f"{order.directory}: is not empty") from error
+            # The directory of a study's run is fixed, so the original hint to choose another does not apply.
+            raise NotEmptyError("directory is not empty", source=order.directory) from error
 
 
-class _Teller:
-    """Tells of the turns, but not more often than anybody looks."""
+class _Reporter:
+    """Reports finished turns, at most once per interval."""
 
-    def __init__(self, talk: Talk) -> None:
-        self._talk = talk
+    def __init__(self, channel: Channel) -> None:
+        self._channel = channel
         self._best: float | None = None
-        self._told = -math.inf
+        self._reported = -math.inf
 
     @hookimpl
     def evoframe_turn_finished(self, turn: Turn) -> None:
         if turn.best_pair is not None:
             self._best = turn.best_pair.score
         now = time.monotonic()
-        if now - self._told >= INTERVAL:
-            self._told = now
-            self._talk.tell(turn.index, self._best)
+        if now - self._reported >= INTERVAL:
+            self._reported = now
+            self._channel.report(turn.index, self._best)
