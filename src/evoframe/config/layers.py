@@ -47,9 +47,15 @@ class Layer:
 
 @attrs.frozen
 class Layers:
-    """Settings in the order in which they override each other; the last one wins."""
+    """Settings in the order in which they override each other; the last one wins.
+
+    Attributes:
+        layers: The settings.
+        local_plugins: Names of the local plugins (``-p``) with which a run of these settings was started.
+    """
 
     layers: tuple[Layer, ...]
+    local_plugins: tuple[str, ...] = ()
 
     def merged(self) -> Tree:
         """Return the merged tree of all layers."""
@@ -63,16 +69,15 @@ class Layers:
         if isinstance(overrides, str):
             raise TypeError("overrides must be a list of strings, not a string")
         on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
-        return Layers((*self.layers, *map(_with_component_tables, on_top)))
+        return attrs.evolve(self, layers=(*self.layers, *map(_with_component_tables, on_top)))
 
     def without(self, *keys: str) -> Layers:
         """Return a copy without some top-level keys."""
-        return Layers(
-            tuple(
-                Layer(layer.origin, {key: value for key, value in layer.tree.items() if key not in keys})
-                for layer in self.layers
-            )
+        kept = (
+            Layer(layer.origin, {key: value for key, value in layer.tree.items() if key not in keys})
+            for layer in self.layers
         )
+        return attrs.evolve(self, layers=tuple(kept))
 
     def origin(self, *paths: tuple[str, ...]) -> str:
         """Return the origin of the value at the latest of *paths*, or of the nearest table around it."""
@@ -117,7 +122,15 @@ def layers_in(tables: Mapping[str, Any], origin: str) -> Layers:
         origin: Source of the tables, as errors name it.
     """
     own = {key: value for key, value in tables.items() if key not in ("extends", "provenance")}
-    return Layers(()).under([Layer(origin, own)])
+    return Layers((), _local_plugins(tables)).under([Layer(origin, own)])
+
+
+def _local_plugins(tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the local plugins in the provenance of a run."""
+    components = tables.get("provenance", {}).get("components", {})
+    sources = components.values() if isinstance(components, Mapping) else ()
+    found = (re.fullmatch(r"'(\w+)' of \1 local", str(source)) for source in sources)
+    return tuple(dict.fromkeys(match.group(1) for match in found if match))
 
 
 def layer_of(origin: str, key: str, value: Any) -> Layer:

@@ -77,7 +77,12 @@ def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
     reading.refuse_missing(usable, settings.require)
     config = reading.config(usable, settings, label)
     if config is None:
-        raise _joined(reading.faults, layers)
+        error = _joined(reading.faults, layers)
+        for name in plugins.missing(layers.local_plugins):
+            error.add_note(
+                f"the run used the local plugin '{name}'; repeat the command with -p PATH/{name}.py"
+            )
+        raise error
     return config
 
 

@@ -117,7 +117,7 @@ class PopulationConfig:
         evolver: Evolves its genomes.
     """
 
-    size: int
+    size: int = attrs.field(validator=validators.ge(2))
     encoder: Chosen[Encoder]
     evolver: Chosen[Evolver]
 

@@ -108,12 +108,16 @@ class Variant:
         design: Design to simulate.
         record: Samples to record: as many of the same tracks as in the unchanged simulation, so that the same
             objective can score them.
+        kept: What it means that the variant keeps the score, as a clause about the score; may be empty.
+        lost: What it means that the variant loses the score, likewise.
     """
 
     name: str
     simulator: Simulator
     design: Design
     record: Record
+    kept: str = ""
+    lost: str = ""
 
 
 @runtime_checkable

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 import attrs
@@ -28,6 +28,15 @@ Scores: TypeAlias = NDArray[np.float64]
 """Scores of one individual with each of its collaborators, ``float64[n]``, in the objective's unit."""
 
 
+def _shapes(roles: Mapping[str, NDArray[Any]]) -> str:
+    """Return types and shapes instead of hundreds of numbers."""
+    return ", ".join(f"{role}: {array.dtype}{list(array.shape)}" for role, array in roles.items())
+
+
+def _count(items: Sequence[Any]) -> str:
+    return f"<{len(items)} items>"
+
+
 def _frozen_roles(roles: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Copy writable arrays, so that a design in a cache never changes."""
     frozen = {}
@@ -49,7 +58,7 @@ class Design:
             1 passive, 3 contractile) and ``controller`` (``float64[X, Y, Z]``: phase offsets).
     """
 
-    roles: Mapping[str, NDArray[Any]] = attrs.field(factory=dict, converter=_frozen_roles)
+    roles: Mapping[str, NDArray[Any]] = attrs.field(factory=dict, converter=_frozen_roles, repr=_shapes)
 
     def with_role(self, role: str, array: NDArray[Any]) -> Design:
         """Return a copy with *array* stored under *role*."""
@@ -177,7 +186,7 @@ class BestPair:
     turn: int
     score: float
     genome_ids: Mapping[str, int]
-    genomes: Mapping[str, Any]
+    genomes: Mapping[str, Any] = attrs.field(repr=False)
     design: Design
 
 
@@ -198,7 +207,7 @@ class PopulationReport:
 
     population: str
     generation: int
-    members: tuple[Member, ...]
+    members: tuple[Member, ...] = attrs.field(repr=_count)
     best: float
     best_so_far: float
     standing_champion: float
@@ -235,6 +244,6 @@ class Turn:
 
     index: int
     reports: tuple[PopulationReport, ...]
-    pairs: tuple[Pair, ...]
+    pairs: tuple[Pair, ...] = attrs.field(repr=_count)
     best_pair: BestPair | None
     workload: Workload = attrs.field(eq=False)

@@ -36,6 +36,10 @@ _DTYPES = (
 _CHAMPION_KEYS = {"format", "score", "simulation", "design"}
 
 
+def _names(simulation: dict[str, Any]) -> str:
+    return ", ".join(f"{key}: {table['name']}" for key, table in simulation.items())
+
+
 @attrs.frozen(eq=False)
 class Champion:
     """The best simulated pair.
@@ -49,7 +53,7 @@ class Champion:
 
     score: float
     design: Design
-    simulation: dict[str, Any]
+    simulation: dict[str, Any] = attrs.field(repr=_names)
     genomes: dict[str, Any] = attrs.field(repr=False)
 
 

@@ -143,6 +143,11 @@ class Plugins:
         """Return the sorted names of the components of a *kind*."""
         return sorted({offer.name for offer in self.offers if offer.kind == kind})
 
+    def missing(self, distributions: Iterable[str]) -> list[str]:
+        """Return the *distributions* that offer no component here."""
+        present = {offer.source.distribution for offer in self.offers}
+        return [name for name in distributions if name not in present]
+
     def kinds_of(self, name: str) -> list[str]:
         """Return the sorted kinds of the components with this *name*."""
         return sorted({offer.kind for offer in self.offers if offer.name == name})

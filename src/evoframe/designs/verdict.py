@@ -1,0 +1,48 @@
+"""Meaning of a verification in one sentence."""
+
+from __future__ import annotations
+
+from evoframe.contract import Design, RunConfig, SupportsVariants
+from evoframe.record import Finding, Verification
+
+__all__ = ["verdict"]
+
+_KEPT = 0.9
+_LOST = 0.5
+
+
+def verdict(verification: Verification, config: RunConfig, design: Design) -> str:
+    """Return what the findings mean for the score, in the words of the simulator.
+
+    A variant that keeps at least 90 % of the score or leaves at most 50 % contributes its own clause, any
+    other variant its share.
+
+    Args:
+        verification: The verification of *design*.
+        config: The configuration with which it was simulated.
+        design: The design.
+
+    Returns:
+        A sentence; empty if the unchanged design has no score or the simulator offers no variants.
+    """
+    simulator = config.simulator.component
+    if not isinstance(simulator, SupportsVariants) or not verification.unchanged.value:
+        return ""
+    variants = {each.name: each for each in simulator.variants(design, config.objective.component.record)}
+    clauses = []
+    for finding in verification.findings:
+        variant = variants.get(finding.name)
+        share = verification.share(finding)
+        clause = "" if variant is None or share is None else _clause(share, variant.kept, variant.lost)
+        clauses.append(f"{clause or finding.name} ({_shown(share, finding)})")
+    return f"The score {'; '.join(clauses)}." if clauses else ""
+
+
+def _clause(share: float, kept: str, lost: str) -> str:
+    if share >= _KEPT:
+        return kept
+    return lost if share <= _LOST else ""
+
+
+def _shown(share: float | None, finding: Finding) -> str:
+    return "diverged" if share is None and finding.diverged_at else "-" if share is None else f"{share:z.0%}"
