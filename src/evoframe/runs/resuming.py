@@ -166,7 +166,7 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
         plugins: The available plugins.
 
     Raises:
-        ConfigurationError: The configuration is invalid, or differs from that of the start; lists changes.
+        ConfigurationError: The configuration is invalid, or changed since the start; the text lists changes.
         InputError: The run is damaged.
     """
     path = run.directory / CONFIG_FILE
@@ -175,7 +175,8 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
     began = run.configuration() if run.begun else resolve_layers(layers, path.stem, plugins).deciding()
     if others := differences(began, config.deciding()):
         problem = "the configuration differs from that with which the run started"
-        raise ConfigurationError(_listed(problem, others), source=run.directory)
+        todo = f"restore {CONFIG_FILE}, or start a new run with it: evoframe run {path}"
+        raise ConfigurationError(f"{_listed(problem, others)}\n  {todo}", source=run.directory)
     return config
 
 
