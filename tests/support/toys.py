@@ -282,8 +282,10 @@ class Varied(Product):
             for factor in (0.9, 1.1)
         ]
         return [
-            Variant("gain off", attrs.evolve(self, gain=0.0), design, record),
-            Variant("no room", attrs.evolve(self, limit=0.0), design, record),
+            Variant(
+                "gain off", attrs.evolve(self, gain=0.0), design, record, "ignores gain", "comes from gain"
+            ),
+            Variant("no room", attrs.evolve(self, limit=0.0), design, record, "fits anywhere", "needs room"),
             *(Variant("one number jittered by 10 %", self, drawn, record) for drawn in draws),
         ]
 

@@ -13,6 +13,7 @@ from evoframe.cli.progress import Progress
 from evoframe.cli.signals import exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
 from evoframe.contract import RunConfig, SupportsVariants, unit_of
+from evoframe.designs import verdict
 from evoframe.record import Run
 from evoframe.runs import Execution, verify_champion
 
@@ -59,6 +60,7 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
         console = output()
         console.print()
         console.print(verification_table(verification))
+        console.print(verdict(verification, config, run.champion().design), soft_wrap=True)
     click.echo(
         f"\nNext, figures and a page that shows the champion moving:\n  {command(ctx, 'report', directory)}",
         err=True,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -18,7 +19,7 @@ from evoframe.cli.context import (
 )
 from evoframe.cli.sources import with_runs_of_studies
 from evoframe.config import Layer
-from evoframe.designs import keep_of_job, read_job, verify_job
+from evoframe.designs import Job, keep_of_job, read_job, verdict, verify_job
 from evoframe.messages import quantity
 from evoframe.record import Finding, Verification
 
@@ -61,16 +62,22 @@ def verify(
         for path in with_runs_of_studies(ctx, sources)
     ]
     found = [(job, verify_job(job)) for job in jobs]
-    labelled = [pair for job, verifications in found for pair in zip(job.labels, verifications, strict=True)]
     if as_json:
+        labelled = [pair for job, made in found for pair in zip(job.labels, made, strict=True)]
         click.echo(json.dumps([{"body": label, **each.to_json()} for label, each in labelled]))
     else:
-        console = output()
-        for label, verification in labelled:
-            console.print(label, style="bold", soft_wrap=True)
-            console.print(verification_table(verification))
+        for job, verifications in found:
+            _print(job, verifications)
     for job, verifications in found:  # after printing, which needs no writable directory
         keep_of_job(job, verifications)
+
+
+def _print(job: Job, verifications: Sequence[Verification]) -> None:
+    console = output()
+    for label, design, verification in zip(job.labels, job.designs, verifications, strict=True):
+        console.print(label, style="bold", soft_wrap=True)
+        console.print(verification_table(verification))
+        console.print(verdict(verification, job.config, design), soft_wrap=True)
 
 
 def verification_table(verification: Verification) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from evoframe.contract import Design, RunConfig, SupportsVariants
-from evoframe.record import Finding, Verification
+from evoframe.record import Verification
 
 __all__ = ["verdict"]
 
@@ -34,15 +34,12 @@ def verdict(verification: Verification, config: RunConfig, design: Design) -> st
         variant = variants.get(finding.name)
         share = verification.share(finding)
         clause = "" if variant is None or share is None else _clause(share, variant.kept, variant.lost)
-        clauses.append(f"{clause or finding.name} ({_shown(share, finding)})")
-    return f"The score {'; '.join(clauses)}." if clauses else ""
+        left = "diverged" if share is None else f"{share:z.0%} left"
+        clauses.append(f"{clause or f'with {finding.name}'} ({left})")
+    return f"The score {', '.join(clauses)}." if clauses else ""
 
 
 def _clause(share: float, kept: str, lost: str) -> str:
     if share >= _KEPT:
         return kept
     return lost if share <= _LOST else ""
-
-
-def _shown(share: float | None, finding: Finding) -> str:
-    return "diverged" if share is None and finding.diverged_at else "-" if share is None else f"{share:z.0%}"
