@@ -45,6 +45,7 @@ USUAL = frozenset(
         "queue",
         "random",
         "re",
+        "shlex",
         "signal",
         "stat",
         "statistics",

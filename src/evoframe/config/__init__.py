@@ -1,6 +1,6 @@
 """Configurations: presets, files and overrides, resolved into one checked value."""
 
-from evoframe.config.commented import commented, starter
+from evoframe.config.comments import commented, starter
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
 from evoframe.config.resolve import load_config, named_simulator, resolve_layers
 

@@ -3,7 +3,7 @@
 from evoframe.designs.exporting import export_all, export_job
 from evoframe.designs.simulating import simulate_job, trace_of
 from evoframe.designs.sources import DEFAULT_PRESET, Job, naming, read_job
-from evoframe.designs.verdict import verdict
+from evoframe.designs.verdicts import verdict
 from evoframe.designs.verifying import keep_of_job, verify, verify_designs, verify_job
 
 __all__ = [
