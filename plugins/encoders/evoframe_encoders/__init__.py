@@ -1,4 +1,4 @@
-"""Encoders of networks: voxel bodies, and the phase offsets of their contractile voxels."""
+"""Encoders that decode networks into voxel bodies, and into phase offsets of their contractile voxels."""
 
 from __future__ import annotations
 
@@ -13,5 +13,5 @@ __all__ = ["CppnController", "CppnMorphology", "evoframe_encoders"]
 
 @hookimpl
 def evoframe_encoders() -> Mapping[str, type[Encoder]]:
-    """Offer the encoders ``cppn-morphology`` and ``cppn-controller``."""
+    """Register the encoders ``cppn-morphology`` and ``cppn-controller``."""
     return {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}

@@ -1,4 +1,4 @@
-"""Where a network is asked: the voxels of a canvas as points."""
+"""Input points of networks: the coordinates of the voxels of a canvas."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def voxel_points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
 
     Args:
         canvas: Number of voxels along x, y and z.
-        normalized: Whether each axis runs from -1 to 1 (0 if it has one voxel) instead of from 0 in voxels.
+        normalized: Whether each axis runs from -1 to 1 (0 if it has one voxel), instead of the voxel indices.
     """
     axes = [np.linspace(-1.0, 1.0, n) if normalized else np.arange(n, dtype=np.float64) for n in canvas]
     if normalized:

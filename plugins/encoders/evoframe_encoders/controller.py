@@ -1,4 +1,4 @@
-"""From a network to phase offsets: the encoder ``cppn-controller``."""
+"""Decoding of networks into phase offsets: the encoder ``cppn-controller``."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ _LARGEST_OFFSET = 2.0 * math.pi
 
 @lru_cache(maxsize=8)
 def _points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
-    """Return what a network sees of each voxel if that contracts, ``float64[X * Y * Z, 4]``."""
+    """Return the network's inputs for each voxel, all as contractile ones, ``float64[X * Y * Z, 4]``."""
     points = voxel_points(canvas, normalized).reshape(-1, 3)
     return np.concatenate([points, np.full((len(points), 1), float(CONTRACTILE))], axis=1)
 
 
 @attrs.frozen
 class CppnController:
-    """Phase offsets drawn by a network that is asked at each contractile voxel of a body.
+    """Phase offsets from a network that is evaluated at each contractile voxel of a body.
 
-    The network sees the coordinates and the material code of a voxel; its output is clamped to +-2 pi. Empty
-    and passive voxels do not contract, so the network is not asked there and their offset is 0. That changes
-    no simulation, but the code that the network sees is always 3.
+    The network's inputs are the coordinates and the material code of a voxel; its output is clamped to
+    +-2 pi. Empty and passive voxels do not contract, so the network is not evaluated there and their offset
+    is 0. This does not affect simulations, but the material code is always 3.
 
     Attributes:
-        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; the paper's networks see
-            the indices of voxels.
+        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; in the paper, the inputs
+            are voxel indices.
     """
 
     normalized_coordinates: bool = False
@@ -55,7 +55,7 @@ class CppnController:
 
     @property
     def requires(self) -> tuple[str, ...]:
-        """The morphology: a controller is decoded against a body."""
+        """The morphology: the offsets depend on the body."""
         return (MORPHOLOGY,)
 
     @property
@@ -64,7 +64,7 @@ class CppnController:
         return (CONTROLLER,)
 
     def decode(self, network: Network, design: Design) -> Design:
-        """Return *design* with the phase offsets that *network* draws on its body."""
+        """Return *design* with the phase offsets that *network* gives for its body."""
         body = design.roles[MORPHOLOGY]
         contractile = np.flatnonzero(body == CONTRACTILE)
         points = _points(body.shape, self.normalized_coordinates).take(contractile, axis=0)

@@ -1,4 +1,4 @@
-"""From a network to a body: the encoder ``cppn-morphology``."""
+"""Decoding of networks into bodies: the encoder ``cppn-morphology``."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ _MOST_VOXELS = 2**24
 def _possible_canvas(_instance: Any, attribute: attrs.Attribute[Canvas], canvas: Canvas) -> None:
     lengths = canvas if isinstance(canvas, tuple) else ()
     if len(lengths) != 3 or not all(isinstance(n, int) and n >= 1 for n in lengths):
-        raise ValueError(f"{attribute.name} must be three whole numbers of at least 1, not {canvas}")
+        raise ValueError(f"'{attribute.name}' must be three whole numbers of at least 1: {canvas}")
     if math.prod(canvas) > _MOST_VOXELS:
-        raise ValueError(f"{attribute.name} {canvas} has more than {_MOST_VOXELS} voxels")
+        raise ValueError(f"'{attribute.name}' must have at most {_MOST_VOXELS} voxels: {canvas}")
 
 
 def _drawn(enclosure: bool) -> tuple[slice, slice, slice]:
-    """Return which part of a canvas the network decides."""
+    """Return the slices of a canvas that the network determines."""
     return (slice(1, -1),) * 3 if enclosure else (slice(None),) * 3
 
 
 @lru_cache(maxsize=8)
 def _points(canvas: Canvas, normalized: bool, enclosure: bool) -> NDArray[np.float64]:
-    """Return the coordinates of the voxels that the network decides, ``float64[n, 3]``, read-only."""
+    """Return the coordinates of the voxels that the network determines, ``float64[n, 3]``, read-only."""
     points = np.array(voxel_points(canvas, normalized)[_drawn(enclosure)].reshape(-1, 3))
     points.setflags(write=False)
     return points
@@ -42,21 +42,22 @@ def _points(canvas: Canvas, normalized: bool, enclosure: bool) -> NDArray[np.flo
 
 @attrs.frozen
 class CppnMorphology:
-    """A body drawn by a network that is asked for each voxel's presence and material.
+    """A body from a network that gives the presence and material of each voxel.
 
-    A voxel is present if the absolute value of the first output reaches *threshold*; then it is contractile
-    if that of the second does, else passive. With *enclosure* the outermost layer of the canvas is passive
-    whatever the network says, so that the free end always exists and a body is never empty. A body without it
-    may be empty, or of several parts unless *connected*.
+    A voxel is present if the absolute value of the first output reaches *threshold*; a present voxel is
+    contractile if the absolute value of the second output does, else passive. With *enclosure*, the outermost
+    layer of the canvas is always passive, so that the free end exists and the body is never empty. Without
+    *enclosure*, a body can be empty, and can consist of several parts unless *connected* is set.
 
     Attributes:
         canvas: Number of voxels along x, y and z.
-        enclosure: Whether the outermost layer is passive and only the interior is drawn (paper).
-        threshold: What an output must reach, without unit (paper).
-        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; the paper's networks see
-            the indices of voxels.
-        connected: Whether only the largest part of voxels that are joined face to face is kept; of equal ones
-            that which comes first along x, then y, then z.
+        enclosure: Whether the outermost layer is passive, and the network determines the interior only
+            (paper).
+        threshold: Threshold of the absolute outputs, dimensionless (paper).
+        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; in the paper, the inputs
+            are voxel indices.
+        connected: Whether to keep only the largest part of voxels that are connected face to face; among
+            equally large parts, the first one along x, then y, then z.
     """
 
     canvas: Canvas = attrs.field(default=(20, 8, 8), validator=_possible_canvas)
@@ -80,7 +81,7 @@ class CppnMorphology:
 
     @property
     def requires(self) -> tuple[str, ...]:
-        """Nothing: a body stands at the beginning of a design."""
+        """Nothing: the body is the first part of a design."""
         return ()
 
     @property
@@ -89,7 +90,7 @@ class CppnMorphology:
         return (MORPHOLOGY,)
 
     def decode(self, network: Network, design: Design) -> Design:
-        """Return *design* with the morphology that *network* draws."""
+        """Return *design* with the morphology that *network* encodes."""
         body = np.full(self.canvas, PASSIVE, dtype=np.uint8)
         drawn = body[_drawn(self.enclosure)]
         points = _points(self.canvas, self.normalized_coordinates, self.enclosure)
@@ -103,9 +104,9 @@ class CppnMorphology:
 
 
 def _largest_part(body: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    from scipy import ndimage  # noqa: PLC0415 - nobody else shall wait for it
+    from scipy import ndimage  # noqa: PLC0415 - slow to import, and needed here only
 
-    parts, n_parts = ndimage.label(body != EMPTY)  # face to face is its default
+    parts, n_parts = ndimage.label(body != EMPTY)  # connects voxels face to face by default
     if n_parts < 2:
         return body
     largest = 1 + int(np.argmax(np.bincount(parts.ravel())[1:]))

@@ -1,6 +1,6 @@
-"""Evolvers of networks: NEAT on neat-python, and random search to compare it with.
+"""Evolvers of networks: NEAT, based on neat-python, and random search as its baseline.
 
-:mod:`.cppn` has the genomes and what all evolvers of them share, :mod:`.crowding` the reproduction of NEAT.
+:mod:`.cppn` contains the genomes and the code that all evolvers share, :mod:`.crowding` NEAT's reproduction.
 """
 
 from __future__ import annotations
@@ -17,5 +17,5 @@ __all__ = ["BiasOptions", "Neat", "RandomSearch", "WeightOptions", "evoframe_evo
 
 @hookimpl
 def evoframe_evolvers() -> Mapping[str, type[Evolver]]:
-    """Offer the evolvers ``neat`` and ``random``."""
+    """Register the evolvers ``neat`` and ``random``."""
     return {"neat": Neat, "random": RandomSearch}

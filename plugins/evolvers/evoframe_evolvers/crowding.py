@@ -1,8 +1,8 @@
-"""neat-python's reproduction, made exact where species crowd each other.
+"""neat-python's reproduction, corrected for many species in a small population.
 
-Two things make neat-python 2.0 stop with a RuntimeError: more elites (or least members of species) than the
-population has places, and a surplus of offspring that it does not trim to the end. Everywhere else these
-classes do what neat-python does.
+neat-python 2.0 raises a RuntimeError in two cases: if elites (or minimum species sizes) add up to more than
+the population size, and if it cannot remove all surplus offspring in one round. In all other cases these
+classes behave as neat-python does.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ __all__ = ["ExactReproduction", "RoomyStagnation", "fit_exactly"]
 _log = logging.getLogger(__name__)
 
 Verdict: TypeAlias = tuple[int, Any, bool]
-"""Id of a species, the species, and whether it dies out; neat-python lists the weakest first."""
+"""Id of a species, the species, and whether it goes extinct; neat-python lists the weakest first."""
 
 
 class RoomyStagnation(neat.DefaultStagnation):  # type: ignore[misc] # neat-python has no types
-    """Decides which species die out, and makes room for those that stay.
+    """Stagnation that decides which species go extinct, and that makes the remaining ones fit the population.
 
     Attributes:
-        places: The size of the next generation, set by :class:`ExactReproduction`.
-        reproduction_config: neat-python's settings, changed for this turn if they ask for too many members.
+        places: Size of the next generation, set by :class:`ExactReproduction`.
+        reproduction_config: neat-python's settings, changed for this turn if they require too many members.
     """
 
     def __init__(self, config: Any, reporters: Any, reproduction_config: Any) -> None:
@@ -35,17 +35,17 @@ class RoomyStagnation(neat.DefaultStagnation):  # type: ignore[misc] # neat-pyth
 
     def update(self, species_set: Any, generation: int) -> list[Verdict]:
         """Return the verdict on every species, the weakest first."""
-        verdicts = _without_weakest(super().update(species_set, generation), self.places)
-        self._make_room(sum(not dies for _, _, dies in verdicts))
+        verdicts = _remove_weakest(super().update(species_set, generation), self.places)
+        self._limit_minimum_sizes(sum(not dies for _, _, dies in verdicts))
         return verdicts
 
-    def _make_room(self, species: int) -> None:
+    def _limit_minimum_sizes(self, species: int) -> None:
         rules = self.reproduction_config
         if species * max(rules.elitism, rules.min_species_size) <= self.places:
             return
         _log.info(
-            "%d species of at least %d members do not fit into a population of %d: "
-            "elitism and min_species_size are 1 for this turn",
+            "%d species of at least %d members exceed the population size of %d; "
+            "using elitism = 1 and min_species_size = 1 in this turn",
             species,
             max(rules.elitism, rules.min_species_size),
             self.places,
@@ -54,32 +54,32 @@ class RoomyStagnation(neat.DefaultStagnation):  # type: ignore[misc] # neat-pyth
         rules.min_species_size = 1
 
 
-def _without_weakest(verdicts: list[Verdict], places: int) -> list[Verdict]:
-    """Let the weakest species die out if there are more than *places*, among equals the oldest."""
+def _remove_weakest(verdicts: list[Verdict], places: int) -> list[Verdict]:
+    """Mark the weakest species as extinct until *places* remain; among equally weak ones, the oldest."""
     surplus = sum(not dies for _, _, dies in verdicts) - places
     result = []
     for key, species, dies in verdicts:
         loses = not dies and surplus > 0
         if loses:
             surplus -= 1
-            _log.warning("species %d loses its place: more species than members", key)
+            _log.warning("removing species %d: more species than members", key)
         result.append((key, species, dies or loses))
     return result
 
 
 class ExactReproduction(neat.DefaultReproduction):  # type: ignore[misc] # neat-python has no types
-    """Breeds a generation of exactly the size asked for."""
+    """Reproduction that returns exactly the requested number of offspring."""
 
     def reproduce(self, config: Any, species: Any, pop_size: int, generation: int) -> dict[int, Any]:
-        """Return the next generation; empty if every species died out."""
+        """Return the next generation; it is empty if every species went extinct."""
         rules = self.reproduction_config
-        asked_for = rules.elitism, rules.min_species_size
+        configured = rules.elitism, rules.min_species_size
         self.stagnation.places = pop_size
         try:
             offspring: dict[int, Any] = super().reproduce(config, species, pop_size, generation)
         finally:
-            rules.elitism, rules.min_species_size = asked_for
-        self.ancestors.clear()  # it would grow for ever, and nobody reads it
+            rules.elitism, rules.min_species_size = configured
+        self.ancestors.clear()  # never read, and grows in every turn
         return offspring
 
     def _adjust_spawn_exact(
@@ -89,15 +89,15 @@ class ExactReproduction(neat.DefaultReproduction):  # type: ignore[misc] # neat-
 
 
 def fit_exactly(amounts: list[int], size: int, least: int) -> list[int]:
-    """Return *amounts* with the sum *size*, none below *least*.
+    """Return *amounts* adjusted to the sum *size*, none below *least*.
 
-    Round by round, what is missing is added one by one from the smallest on, what is too much is taken one by
-    one from the largest on. neat-python breaks off after one round of taking.
+    Each round adds 1 to amounts in ascending order, or subtracts 1 in descending order, until the sum fits.
+    neat-python stops after one round of subtraction.
 
     Args:
-        amounts: Members that each species would get, each at least *least*.
-        size: Members in all, at least *least* for each species.
-        least: The fewest members of a species.
+        amounts: Requested members of each species, each at least *least*.
+        size: Total number of members, at least *least* for each species.
+        least: Minimum number of members of a species.
     """
     result = list(amounts)
     ascending = sorted(range(len(amounts)), key=lambda i: amounts[i])

@@ -36,26 +36,28 @@ _log = logging.getLogger(__name__)
 
 @attrs.frozen(kw_only=True)
 class Neat(GenomeOptions):
-    """NeuroEvolution of Augmenting Topologies (Stanley and Miikkulainen 2002), as neat-python 2.0 does it.
+    """NeuroEvolution of Augmenting Topologies (Stanley and Miikkulainen 2002), by neat-python 2.0.
 
-    The defaults are those of the paper's table and, where it is silent, of the authors' configuration. How
-    genomes begin and mutate is described at :class:`GenomeOptions`.
+    The defaults come from the paper's table or, for options that it does not list, from the authors'
+    configuration. See :class:`GenomeOptions` for the initialization and mutation of genomes.
 
-    The elites or least members of many species may not fit into the population; then *elitism* and
-    *min_species_size* are 1 for that turn. If every species dies out, which takes a *species_elitism* of 0,
-    the population starts afresh.
+    If the elites or minimum sizes of all species exceed the population size, *elitism* and
+    *min_species_size* are 1 for that turn. If every species goes extinct, which requires
+    *species_elitism* = 0, the population is initialized again.
 
     Attributes:
-        compatibility_threshold: Genetic distance from which on two genomes are of different species (paper).
-        compatibility_disjoint: What a gene that only one of two genomes has adds to their distance (paper).
-        compatibility_weight: What a difference of 1 in a weight, bias or activation adds to it (paper).
-        max_stagnation: Generations without a better species fitness until a species dies out (paper).
-        species_elitism: So many of the best species do not die out (authors' configuration).
-        species_fitness: The fitness of a species: the ``max``, ``mean``, ``min`` or ``median`` of its members
+        compatibility_threshold: Genetic distance from which two genomes belong to different species (paper).
+        compatibility_disjoint: Contribution to the distance of a gene that only one of two genomes has
+            (paper).
+        compatibility_weight: Contribution of a difference of 1 in a weight, bias or activation (paper).
+        max_stagnation: Generations without improvement of its fitness after which a species goes extinct
+            (paper).
+        species_elitism: Number of the best species that cannot go extinct (authors' configuration).
+        species_fitness: Fitness of a species: the ``max``, ``mean``, ``min`` or ``median`` of its members
             (authors' configuration).
-        elitism: So many of the best members of each species live on unchanged (authors' configuration).
-        survival_threshold: Share of a species, from the best down, that may be parents (paper).
-        min_species_size: The fewest members of a species (neat-python's default).
+        elitism: Number of the best members of each species that survive unchanged (authors' configuration).
+        survival_threshold: Fraction of each species, the best first, that can become parents (paper).
+        min_species_size: Minimum number of members of a species (neat-python's default).
     """
 
     compatibility_threshold: float = attrs.field(default=3.0, validator=ge(0.0))
@@ -69,18 +71,22 @@ class Neat(GenomeOptions):
     min_species_size: int = at_least(1, 1)
 
     def check(self, size: int) -> None:
-        """Refuse a population that would never have offspring."""
+        """Require a population of *size* that can have offspring."""
         if size < 1:
-            raise ConfigurationError(f"a population needs at least 1 member, not {size}")
+            raise ConfigurationError(f"expected a population of at least 1 member, found {size}")
         if self.elitism >= size:
             raise ConfigurationError(
-                f"elitism {self.elitism} leaves no place for offspring in a population of {size}"
+                f"elitism = {self.elitism} prevents offspring in a population of {size}; "
+                f"set it to less than {size}"
             )
         if self.min_species_size > size:
-            raise ConfigurationError(f"min_species_size {self.min_species_size} of a population of {size}")
+            raise ConfigurationError(
+                f"min_species_size = {self.min_species_size} exceeds the population size {size}; "
+                f"set it to {size} or less"
+            )
 
     def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> NeatRun:
-        """Begin to evolve *size* genomes that express networks with *inputs* and *outputs*."""
+        """Initialize *size* genomes that encode networks with *inputs* and *outputs*."""
         self.check(size)
         return NeatRun(GenePool(self, _selection(self), inputs, outputs, rng), size)
 
@@ -127,7 +133,7 @@ class _SavedRun:
 
 
 class NeatRun(NetworkRun):
-    """NEAT at work on one population."""
+    """Evolution of one population by NEAT."""
 
     def __init__(self, pool: GenePool, size: int) -> None:
         config, reporters = pool.config, ReporterSet()
@@ -161,7 +167,7 @@ class NeatRun(NetworkRun):
         with self._pool.stream.swapped_in():
             offspring = self._reproduction.reproduce(config, self._species_set, self._size, generation)
             if not offspring:
-                _log.warning("every species died out in generation %d: a fresh start", generation)
+                _log.warning("every species went extinct in generation %d; starting again", generation)
                 offspring = self._create()
             self._species_set.speciate(config, offspring, generation)
         self._cohort.succeed(offspring)
@@ -180,7 +186,7 @@ class NeatRun(NetworkRun):
         """Continue from what :meth:`state` returned.
 
         Raises:
-            ValueError: It is not the state of such a population; this one stays as it is.
+            ValueError: *state* is not the state of a population of this kind; this run is unchanged.
         """
         saved = structure(state, _SavedRun, ("state",))
         cohort = self._saved_cohort(saved.cohort)
@@ -202,7 +208,7 @@ def _dump_species(species: Any) -> dict[str, Any]:
         "members": list(species.members),
         "fitness": species.fitness,
         "adjusted_fitness": species.adjusted_fitness,
-        # All that neat-python asks of a history that grows without end.
+        # The only value of the history that neat-python uses; the history itself grows in every turn.
         "best_fitness": max(species.fitness_history, default=None),
     }
 
@@ -210,7 +216,7 @@ def _dump_species(species: Any) -> dict[str, Any]:
 def _load_species(saved: _SavedSpecies, genomes: Mapping[int, Any]) -> Any:
     for key in (saved.representative, *saved.members):
         if key not in genomes:
-            raise ValueError(f"species {saved.id} has a member {key} that is not in the population")
+            raise ValueError(f"species {saved.id}: member {key} is not in the population")
     species = Species(saved.id, saved.created)
     species.last_improved = saved.last_improved
     species.update(genomes[saved.representative], {key: genomes[key] for key in saved.members})
@@ -220,10 +226,13 @@ def _load_species(saved: _SavedSpecies, genomes: Mapping[int, Any]) -> Any:
 
 
 def _check_partition(species: Sequence[Any], genomes: Mapping[int, Any], next_species: int) -> None:
-    """Make sure that every genome is in one species, and every species in one place."""
+    """Require that every genome belongs to exactly one species, and that species have unique ids."""
     members = [key for kind in species for key in kind.members]
     if sorted(members) != sorted(genomes):
-        raise ValueError("the species do not divide the population among them")
+        raise ValueError("state.species: expected every member of the population in exactly one species")
     keys = {kind.key for kind in species}
     if len(keys) < len(species) or max(keys) >= next_species or not all(kind.members for kind in species):
-        raise ValueError("the ids of the species are not what they should be, or one is empty")
+        raise ValueError(
+            f"state.species: expected non-empty species with unique ids below {next_species}, found ids "
+            f"{sorted(kind.key for kind in species)}"
+        )

@@ -1,4 +1,4 @@
-"""Random search: the evolver ``random``, which learns nothing, for comparison at equal cost."""
+"""Random search: the evolver ``random``, a baseline of equal cost without selection."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ __all__ = ["RandomSearch", "RandomSearchRun"]
 
 @attrs.frozen(kw_only=True)
 class RandomSearch(GenomeOptions):
-    """A fresh population in every turn, whatever the fitness of the last.
+    """Random search: a new population in every turn, independent of fitness.
 
-    Each genome begins as NEAT's do and is then mutated so many times, drawn uniformly from 0 to *mutations*.
-    How genomes begin and mutate is described at :class:`GenomeOptions`.
+    Each genome is initialized as in NEAT and then mutated several times; the number of mutations is drawn
+    uniformly from 0 to *mutations*. See :class:`GenomeOptions` for initialization and mutation.
 
     Attributes:
-        mutations: The most mutations of a genome; with 0 every turn is like the first of a run of NEAT.
+        mutations: Maximum number of mutations of a genome; with 0, every turn is like the first turn of NEAT.
     """
 
     mutations: int = at_least(0, 0)
 
     def check(self, size: int) -> None:
-        """Refuse an empty population."""
+        """Require a population of at least one member."""
         if size < 1:
-            raise ConfigurationError(f"a population needs at least 1 member, not {size}")
+            raise ConfigurationError(f"expected a population of at least 1 member, found {size}")
 
     def start(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> RandomSearchRun:
-        """Begin to draw *size* genomes a turn that express networks with *inputs* and *outputs*."""
+        """Start a search that draws *size* genomes per turn for networks with *inputs* and *outputs*."""
         self.check(size)
         return RandomSearchRun(GenePool(self, NO_SELECTION, inputs, outputs, rng), size, self.mutations)
 
@@ -56,7 +56,7 @@ class _SavedRun:
 
 
 class RandomSearchRun(NetworkRun):
-    """Random search at work on one population."""
+    """Random search in one population."""
 
     def __init__(self, pool: GenePool, size: int, mutations: int) -> None:
         self._pool = pool
@@ -93,7 +93,7 @@ class RandomSearchRun(NetworkRun):
         """Continue from what :meth:`state` returned.
 
         Raises:
-            ValueError: It is not the state of such a population; this one stays as it is.
+            ValueError: *state* is not the state of a population of this kind; this run is unchanged.
         """
         saved = structure(state, _SavedRun, ("state",))
         cohort = self._saved_cohort(saved.cohort)

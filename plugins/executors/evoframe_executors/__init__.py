@@ -1,4 +1,4 @@
-"""Ways to spread simulations over the cores of this computer: ``serial``, ``threads`` and ``processes``."""
+"""Executors that use the cores of this computer: ``serial``, ``threads`` and ``processes``."""
 
 from __future__ import annotations
 
@@ -14,5 +14,5 @@ __all__ = ["Processes", "Serial", "Threads"]
 
 @hookimpl
 def evoframe_executors() -> Mapping[str, type[Executor]]:
-    """Offer executors that need nothing but this computer."""
+    """Register the executors that use this computer only."""
     return {"processes": Processes, "serial": Serial, "threads": Threads}

@@ -17,21 +17,21 @@ R = TypeVar("R")
 
 @attrs.frozen
 class Serial:
-    """One item after the other, in the thread that asks."""
+    """One item after the other, in the calling thread."""
 
     def start(self) -> ExecutorRun:
-        """Return the one worker."""
+        """Return the single worker."""
         return InThisThread()
 
 
 class InThisThread:
-    """The worker of ``serial``."""
+    """The worker of ``serial``: the calling thread."""
 
     workers: ClassVar[int] = 1
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
-        """Work on the items one by one."""
+        """Process the items one by one."""
         return [function(item) for item in items]
 
     def close(self) -> None:
-        """Do nothing: there is nobody to let go."""
+        """Do nothing: there are no workers to shut down."""

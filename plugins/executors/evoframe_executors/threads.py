@@ -26,33 +26,34 @@ R = TypeVar("R")
 
 @attrs.frozen
 class Threads:
-    """Threads of this process; they run at once where a simulator lets go of Python's lock, as ``vox`` does.
+    """Threads of this process; they run in parallel if the simulator releases the GIL, as ``vox`` does.
 
-    A thread cannot be ended from outside. One that takes too long is left alone, and the run stops; one that
-    keeps Python's lock all the while is not even noticed. ``processes`` can end both.
+    Threads cannot be terminated. If one exceeds the time limit, the run stops and abandons it; a thread that
+    never releases the GIL even prevents this check. The executor ``processes`` can terminate its workers in
+    both cases.
 
     Attributes:
-        workers: Number of threads, at most 1024; 0 takes one for each core that this process may use.
-        batch_time_limit: Seconds after which a batch of simulations counts as lost, and the run stops. Take
-            far more than a batch needs on a busy computer.
+        workers: Number of threads, at most 1024; 0 uses one for each core available to this process.
+        batch_time_limit: Seconds after which an unfinished batch of simulations counts as lost and the run
+            stops. Choose a much larger limit than a batch needs on a busy computer.
     """
 
     workers: int = worker_count()
     batch_time_limit: float | None = time_limit()
 
     def start(self) -> ExecutorRun:
-        """Make the threads ready; a single worker without a time limit needs none."""
+        """Start the threads; a single worker without a time limit needs none."""
         workers = self.workers or available_cores()
         if workers == 1 and self.batch_time_limit is None:
             return InThisThread()
-        return _InThreads(workers, self.batch_time_limit)
+        return _ThreadWorkers(workers, self.batch_time_limit)
 
 
-class _InThreads:
+class _ThreadWorkers:
     """The workers of ``threads``.
 
-    Without a time limit the last is the thread that asks, as soon as all items are handed out; with one it
-    watches the others.
+    Without a time limit, the calling thread is the last worker, once all items are submitted; with a time
+    limit, it monitors the others.
     """
 
     def __init__(self, workers: int, limit: float | None) -> None:
@@ -65,28 +66,28 @@ class _InThreads:
             self._pool = self._new_pool()
         batch = _Batch(function)
         try:
-            self._hand_out(batch, items)
+            self._submit(batch, items)
             return [self._result(task) for task in batch.tasks]
         except (KeyboardInterrupt, SystemExit):
-            self._pool.abandoned = True  # whoever wants to leave now does not wait for the others
+            self._pool.abandoned = True  # exit without waiting for the other threads
             raise
         finally:
             for task in batch.tasks:
-                task.future.cancel()  # unless a thread has begun it
+                task.future.cancel()  # unless a thread has started it
             if not self._pool.abandoned:
-                # Nothing goes on behind the caller's back.
+                # No work continues after map() has returned.
                 concurrent.futures.wait([task.future for task in batch.tasks])
 
-    def _hand_out(self, batch: _Batch[T, R], items: Iterable[T]) -> None:
-        """Let the threads begin with an item while the next is made; then help, until one has failed."""
+    def _submit(self, batch: _Batch[T, R], items: Iterable[T]) -> None:
+        """Submit each item while the generator creates the next; then help, until a task has failed."""
         try:
             for item in items:
-                self._pool.give(batch.add(item))
+                self._pool.submit(batch.add(item))
                 if batch.failed < math.inf:
                     return
         except Exception:
             for task in batch.tasks:
-                self._result(task)  # an item before the one that could not be made may have failed
+                self._result(task)  # raises if an earlier item has failed
             raise
         if self._limit is None:
             self._pool.help()
@@ -95,9 +96,9 @@ class _InThreads:
         return _Pool(self.workers - 1 if self._limit is None else self.workers)
 
     def _result(self, task: _Task[T, R]) -> R:
-        """Return the result of a task whose predecessors are done, so that a thread begins it if none has."""
+        """Return the result of a task whose predecessors are done, so that a thread will start it."""
         if self._limit is not None:
-            task.begun.wait()
+            task.started.wait()
             done, _ = concurrent.futures.wait(
                 [task.future], max(0.0, task.since + self._limit - time.monotonic())
             )
@@ -116,7 +117,7 @@ class _Batch(Generic[T, R]):
     def __init__(self, function: Callable[[T], R]) -> None:
         self.function = function
         self.tasks: list[_Task[T, R]] = []
-        self.failed = math.inf  # the place of a task that has failed; those behind it need not begin
+        self.failed = math.inf  # the first place of a failed task; tasks after it are not started
 
     def add(self, item: T) -> _Task[T, R]:
         task = _Task(self, len(self.tasks), item)
@@ -125,28 +126,28 @@ class _Batch(Generic[T, R]):
 
 
 class _Task(Generic[T, R]):
-    """An item, when work on it began, and its result."""
+    """An item, the start time of its processing, and its result."""
 
     def __init__(self, batch: _Batch[T, R], place: int, item: T) -> None:
         self.item = item
-        self.begun = threading.Event()
+        self.started = threading.Event()
         self.since = math.inf
         self.future: Future[R] = Future()
         self._batch = batch
         self._place = place
 
     def work(self) -> None:
-        """Work on the item in this thread, unless it is no longer wanted.
+        """Process the item in this thread, unless the task was canceled or an earlier one has failed.
 
         Raises:
-            KeyboardInterrupt: So did the work; the future has it too.
+            KeyboardInterrupt: The function raised it; the future contains it too.
         """
         if self._batch.failed < self._place:
             self.future.cancel()
         if not self.future.set_running_or_notify_cancel():
             return
         self.since = time.monotonic()
-        self.begun.set()
+        self.started.set()
         try:
             result = self._batch.function(self.item)
         except BaseException as error:
@@ -159,9 +160,9 @@ class _Task(Generic[T, R]):
 
 
 class _Pool:
-    """Threads that take tasks in their order.
+    """Threads that take tasks in order.
 
-    Python waits at its end for those of :mod:`concurrent.futures`; these can be abandoned.
+    They can be abandoned, unlike the threads of :mod:`concurrent.futures`, for which Python waits at exit.
     """
 
     def __init__(self, size: int) -> None:
@@ -173,11 +174,11 @@ class _Pool:
         for thread in self._threads:
             thread.start()
 
-    def give(self, task: _Task[Any, Any]) -> None:
+    def submit(self, task: _Task[Any, Any]) -> None:
         self._tasks.put(task)
 
     def help(self) -> None:
-        """Work in this thread too, until all tasks have begun or a Ctrl-C comes."""
+        """Process tasks in this thread too, until all tasks have started or Ctrl-C is pressed."""
         with contextlib.suppress(queue.Empty):
             while (task := self._tasks.get_nowait()) is not None:
                 task.work()
@@ -191,5 +192,5 @@ class _Pool:
 
     def _serve(self) -> None:
         while (task := self._tasks.get()) is not None:
-            with contextlib.suppress(KeyboardInterrupt):  # is for the thread that asks
+            with contextlib.suppress(KeyboardInterrupt):  # the calling thread handles it
                 task.work()

@@ -1,6 +1,6 @@
-"""What a worker process does, and the parcels of bytes that pass between it and the process that asks.
+"""Work of a worker process, and the parcels of bytes that it exchanges with the calling process.
 
-The parcels are made as :mod:`multiprocessing` makes its own. Nothing but these processes sees them.
+Parcels are pickled as in :mod:`multiprocessing`, and are never read by any other process.
 """
 
 from __future__ import annotations
@@ -14,77 +14,77 @@ import attrs
 
 from evoframe import RunError
 
-__all__ = ["Answer", "answered", "packed", "unpacked"]
+__all__ = ["Answer", "execute", "pack", "unpack"]
 
 
 @attrs.frozen
 class Answer:
-    """What came of a function.
+    """Result of a function call in a worker process.
 
     Attributes:
-        succeeded: Whether it returned something; otherwise it raised something.
-        parcel: What it returned or raised.
+        succeeded: Whether the function returned a value; if not, it raised an exception.
+        parcel: The returned value or the raised exception.
     """
 
     succeeded: bool
     parcel: bytes
 
 
-def packed(function: Callable[[Any], Any], item: Any) -> bytes:
-    """Return a parcel for :func:`answered`.
+def pack(function: Callable[[Any], Any], item: Any) -> bytes:
+    """Return a parcel for :func:`execute`.
 
     Raises:
-        RunError: One of both cannot be sent to another process.
+        RunError: The function or the item cannot be pickled.
     """
     try:
-        return _packed((function, item))
+        return _pickle((function, item))
     except Exception as error:
-        raise _cannot_travel("what a worker shall do cannot be sent to it", error) from error
+        raise _transfer_error("cannot send a task to a worker process", error) from error
 
 
-def answered(parcel: bytes) -> Answer:
-    """Return what comes of a function and an item, in a worker process."""
+def execute(parcel: bytes) -> Answer:
+    """Call the packed function with its item, in a worker process, and return its result."""
     try:
         function, item = ForkingPickler.loads(parcel)
-    except Exception as error:  # noqa: BLE001 - raised by the process that asks
-        return _untravelled("a worker does not know what it shall do", error)
+    except Exception as error:  # noqa: BLE001 - raised in the calling process
+        return _transfer_failure("cannot load a task in a worker process", error)
     try:
         result = function(item)
-    except BaseException as error:  # noqa: BLE001 - raised by the process that asks
+    except BaseException as error:  # noqa: BLE001 - raised in the calling process
         return _failure(error)
     try:
-        return Answer(succeeded=True, parcel=_packed(result))
-    except Exception as error:  # noqa: BLE001 - raised by the process that asks
-        return _untravelled("a result cannot be sent back", error)
+        return Answer(succeeded=True, parcel=_pickle(result))
+    except Exception as error:  # noqa: BLE001 - raised in the calling process
+        return _transfer_failure("cannot return a result from a worker process", error)
 
 
-def unpacked(answer: Answer) -> Any:
-    """Return what a function returned, or raise what it raised."""
+def unpack(answer: Answer) -> Any:
+    """Return the value that a function returned, or raise its exception."""
     content = ForkingPickler.loads(answer.parcel)
     if answer.succeeded:
         return content
     raise content
 
 
-def _packed(content: Any) -> bytes:
+def _pickle(content: Any) -> bytes:
     return bytes(ForkingPickler.dumps(content))
 
 
 def _failure(error: BaseException) -> Answer:
-    """Return an error as an answer, with its traceback, which would be lost; as text, if it cannot travel."""
+    """Return the answer for an exception, with its traceback as a note; as text if it cannot be pickled."""
     error.add_note("In a worker process:\n" + "".join(traceback.format_exception(error)))
     try:
-        ForkingPickler.loads(parcel := _packed(error))
-    except Exception:  # noqa: BLE001 - many exceptions cannot be made again from their arguments
-        parcel = _packed(RunError(f"{type(error).__name__}: {error}"))
+        ForkingPickler.loads(parcel := _pickle(error))
+    except Exception:  # noqa: BLE001 - many exceptions cannot be recreated from their arguments
+        parcel = _pickle(RunError(f"{type(error).__name__}: {error}"))
     return Answer(succeeded=False, parcel=parcel)
 
 
-def _untravelled(what: str, error: Exception) -> Answer:
-    return Answer(succeeded=False, parcel=_packed(_cannot_travel(what, error)))
+def _transfer_failure(problem: str, error: Exception) -> Answer:
+    return Answer(succeeded=False, parcel=_pickle(_transfer_error(problem, error)))
 
 
-def _cannot_travel(what: str, error: Exception) -> RunError:
+def _transfer_error(problem: str, error: Exception) -> RunError:
     cause = f"{type(error).__name__}: {error}"
-    todo = "simulators and objectives of a file given with -p, for example, work with 'threads' only"
-    return RunError(f"executor 'processes': {what}: {cause}; {todo}")
+    advice = "simulators and objectives of a plugin given with -p require --set executor=threads"
+    return RunError(f"'processes' {problem}: {cause}; {advice}", key="executor")

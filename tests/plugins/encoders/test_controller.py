@@ -48,7 +48,9 @@ def test_the_declarations_are_the_papers() -> None:
 
 
 @given(BODIES, st.booleans(), SEEDS, SCALES)
-def test_offsets_are_those_drawn_voxel_by_voxel(body: Any, normalized: bool, seed: int, scale: float) -> None:
+def test_offsets_equal_those_decoded_voxel_by_voxel(
+    body: Any, normalized: bool, seed: int, scale: float
+) -> None:
     drawing = network_of(4, 1, seed, scale)
     expected = np.zeros(body.shape)
     for index in zip(*np.nonzero(body == 3), strict=True):
@@ -61,13 +63,15 @@ def test_offsets_are_those_drawn_voxel_by_voxel(body: Any, normalized: bool, see
 
 
 @given(BODIES, SEEDS, SCALES)
-def test_offsets_are_within_2_pi_and_0_where_nothing_contracts(body: Any, seed: int, scale: float) -> None:
+def test_offsets_are_within_2_pi_and_0_in_voxels_that_do_not_contract(
+    body: Any, seed: int, scale: float
+) -> None:
     offsets = offsets_of(body, network_of(4, 1, seed, scale))
     assert (np.abs(offsets) <= 2 * math.pi).all()
     assert (offsets[body != 3] == 0.0).all()
 
 
-def test_the_same_network_draws_another_controller_on_another_body() -> None:
+def test_the_same_network_gives_a_different_controller_for_a_different_body() -> None:
     drawing = network_of(4, 1, 0, 0.1)
     one, other = np.full((3, 3, 3), 3, np.uint8), np.full((3, 3, 3), 3, np.uint8)
     other[1] = 1
@@ -80,7 +84,7 @@ def test_a_body_without_contractile_voxels_has_no_offsets() -> None:
     assert not offsets_of(np.ones((2, 2, 2), np.uint8), network_of(4, 1, 0, 1.0)).any()
 
 
-def test_the_network_sees_raw_coordinates_and_the_material_code() -> None:
+def test_the_inputs_are_raw_coordinates_and_the_material_code() -> None:
     body = np.zeros((4, 3, 2), np.uint8)
     body[3, 2, 1] = body[0, 0, 1] = 3
     body[1, 1, 1] = 1

@@ -1,4 +1,4 @@
-"""The encoders that are offered, and their optional capabilities."""
+"""The names of the built-in encoders, and their optional capabilities."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from evoframe import Encoder, SupportsInputNames, SupportsOutputNames
 from evoframe_encoders import CppnController, CppnMorphology, evoframe_encoders
 
 
-def test_they_are_offered_by_name() -> None:
+def test_they_are_registered_by_name() -> None:
     assert evoframe_encoders() == {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}
 
 

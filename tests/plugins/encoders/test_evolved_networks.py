@@ -1,4 +1,4 @@
-"""The encoders on what they are made for: networks that neat-python evolved."""
+"""The encoders with networks evolved by neat-python."""
 
 import math
 from typing import Any
@@ -37,11 +37,11 @@ def test_every_genome_gives_a_body_and_a_controller(evolver: Any) -> None:
         assert np.isfinite(offsets).all()
         assert (np.abs(offsets) <= 2 * math.pi).all()
         seen.add((codes.tobytes(), offsets.tobytes()))
-    assert len(seen) > len(bodies) // 4  # many genomes draw all or nothing, but not all of them
+    assert len(seen) > len(bodies) // 4  # many genomes give full or empty bodies, but not all of them
 
 
 @pytest.mark.parametrize("evolver", EVOLVERS)
-def test_a_body_does_not_depend_on_how_many_voxels_are_asked_at_once(evolver: Any) -> None:
+def test_a_body_does_not_depend_on_the_number_of_voxels_evaluated_at_once(evolver: Any) -> None:
     for network in networks(evolver, 3, 2, 2):
         together = CppnMorphology().decode(network, Design()).roles["morphology"]
         one_by_one = CppnMorphology().decode(_apart(network), Design()).roles["morphology"]

@@ -35,7 +35,7 @@ def constant(presence: float, material: float) -> Any:
 
 
 def one_by_one(encoder: CppnMorphology, network: Any) -> Any:
-    """Decode voxel by voxel, as the paper says it."""
+    """Decode voxel by voxel, as the paper describes."""
     body = np.zeros(encoder.canvas, dtype=np.uint8)
     for index in np.ndindex(*encoder.canvas):
         outermost = any(i in (0, n - 1) for i, n in zip(index, encoder.canvas, strict=True))
@@ -63,7 +63,9 @@ ENCODERS = st.builds(
 
 
 @given(ENCODERS, SEEDS, SCALES)
-def test_a_body_is_the_one_drawn_voxel_by_voxel(encoder: CppnMorphology, seed: int, scale: float) -> None:
+def test_a_body_equals_the_one_decoded_voxel_by_voxel(
+    encoder: CppnMorphology, seed: int, scale: float
+) -> None:
     drawing = network_of(3, 2, seed, scale)
     assert body_of(encoder, drawing).tolist() == one_by_one(encoder, drawing).tolist()
 
@@ -81,7 +83,7 @@ def test_a_body_has_the_canvas_the_codes_and_the_enclosure(canvas: Any, seed: in
 
 
 def parts_of(body: Any) -> list[set[tuple[int, ...]]]:
-    """Return the parts of a body, walking from voxel to voxel through their faces."""
+    """Return the parts of a body by walking from voxel to voxel through their faces."""
     left = {tuple(index) for index in np.argwhere(body).tolist()}
     parts = []
     while left:
@@ -99,16 +101,16 @@ def parts_of(body: Any) -> list[set[tuple[int, ...]]]:
 
 
 def noise(seed: int) -> Any:
-    """Return what no network draws: bodies of many small parts."""
+    """Return a random network that gives bodies of many small parts, unlike real networks."""
     return lambda points: np.random.default_rng(seed).normal(size=(len(points), 2), scale=0.5)
 
 
 @given(CANVASES, SEEDS)
-def test_the_largest_part_is_kept_as_it_is(canvas: Any, seed: int) -> None:
+def test_the_largest_part_is_kept_unchanged(canvas: Any, seed: int) -> None:
     drawing = noise(seed)
     whole = body_of(CppnMorphology(canvas, enclosure=False), drawing)
     kept = body_of(CppnMorphology(canvas, enclosure=False, connected=True), drawing)
-    largest = max(parts_of(whole), key=len, default=set())  # the first of equal ones
+    largest = max(parts_of(whole), key=len, default=set())  # the first among equally large ones
     assert {tuple(index) for index in np.argwhere(kept).tolist()} == largest
     assert kept[kept > 0].tolist() == whole[kept > 0].tolist()
     assert not kept.flags.writeable
@@ -130,7 +132,7 @@ def test_presence_comes_first_and_signs_do_not_matter(presence: float, material:
     assert set(np.unique(body[1:-1, 1:-1, 1:-1])) == {code}
 
 
-def test_only_the_interior_is_asked_in_raw_coordinates() -> None:
+def test_the_network_is_evaluated_in_the_interior_only_in_raw_coordinates() -> None:
     asked = []
 
     def network(points: Any) -> Any:
@@ -143,7 +145,7 @@ def test_only_the_interior_is_asked_in_raw_coordinates() -> None:
     assert (points.min(axis=0).tolist(), points.max(axis=0).tolist()) == ([1, 1, 1], [18, 6, 6])
 
 
-def test_the_points_are_made_once_and_cannot_be_changed() -> None:
+def test_the_points_are_computed_once_and_cannot_be_changed() -> None:
     asked = []
 
     def network(points: Any) -> Any:
@@ -158,17 +160,17 @@ def test_the_points_are_made_once_and_cannot_be_changed() -> None:
 
 
 def test_other_roles_of_a_design_are_kept() -> None:
-    design = CppnMorphology().decode(constant(1, 1), Design({"colour": np.arange(3)}))
-    assert sorted(design.roles) == ["colour", "morphology"]
+    design = CppnMorphology().decode(constant(1, 1), Design({"color": np.arange(3)}))
+    assert sorted(design.roles) == ["color", "morphology"]
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"canvas": (0, 8, 8)}, "three whole numbers of at least 1"),
-        ({"canvas": (8, 8)}, "three whole numbers of at least 1"),
-        ({"canvas": [20, 8, 8]}, "three whole numbers of at least 1"),
-        ({"canvas": (2**12, 2**12, 2)}, "more than 16777216 voxels"),
+        ({"canvas": (0, 8, 8)}, r"'canvas' .*three .*: \(0, 8, 8\)$"),
+        ({"canvas": (8, 8)}, r"'canvas' .*three .*: \(8, 8\)$"),
+        ({"canvas": [20, 8, 8]}, r"'canvas' .*three .*: \[20, 8, 8\]$"),
+        ({"canvas": (2**12, 2**12, 2)}, r"'canvas' .*16777216 voxels: \(4096, 4096, 2\)$"),
         ({"threshold": -0.1}, "threshold"),
         ({"threshold": float("nan")}, "threshold"),
     ],

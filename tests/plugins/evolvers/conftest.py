@@ -1,4 +1,4 @@
-"""neat-python's own networks, to compare with."""
+"""neat-python's own networks, for comparison."""
 
 from types import SimpleNamespace
 from typing import Any

@@ -1,4 +1,4 @@
-"""The evolvers that are offered, and their optional capabilities."""
+"""The names of the built-in evolvers, and their optional capabilities."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from evoframe import Evolver, SupportsGraph, SupportsProvenance
 from evoframe_evolvers import Neat, RandomSearch, evoframe_evolvers
 
 
-def test_they_are_offered_by_name() -> None:
+def test_they_are_registered_by_name() -> None:
     assert evoframe_evolvers() == {"neat": Neat, "random": RandomSearch}
 
 
@@ -19,7 +19,7 @@ def test_each_has_the_capabilities(evolver: type[Evolver], capability: type) -> 
 
 
 @pytest.mark.parametrize("evolver", evoframe_evolvers().values())
-def test_the_library_that_breeds_is_noted(evolver: type[Evolver]) -> None:
+def test_the_version_of_neat_python_is_reported(evolver: type[Evolver]) -> None:
     component = evolver()
     assert isinstance(component, SupportsProvenance)
     assert [*component.provenance()] == ["neat-python"]

@@ -1,4 +1,4 @@
-# ruff: noqa: S311 - the point is Python's global generator
+# ruff: noqa: S311 - Python's global generator is under test
 import copy
 import json
 import os
@@ -34,7 +34,7 @@ def start(seed: int = 0, size: int = 25, **options: Any) -> Any:
 
 
 def fitness_of(genomes: list[Any]) -> list[float]:
-    """A fitness that rewards structure, and depends on nothing but the genomes."""
+    """Return a fitness that rewards structure and depends only on the genomes."""
     return [
         sum(gene.weight for gene in genome.connections.values()) + len(genome.nodes) for genome in genomes
     ]
@@ -46,7 +46,7 @@ def turn(run: Any) -> list[Any]:
     return [run.dump(genome) for genome in genomes]
 
 
-def test_genomes_begin_as_in_the_paper() -> None:
+def test_initial_genomes_are_those_of_the_paper() -> None:
     run = start()
     activations = set()
     for genome in map(run.dump, run.ask()):
@@ -69,7 +69,7 @@ def test_responses_stay_1_and_numbers_within_bounds() -> None:
 
 
 def neat_alone(seed: int, generations: int) -> list[Any]:
-    """Return the populations of neat-python's own loop, from the same random numbers."""
+    """Return the populations of neat-python's own loop with the same random numbers."""
     options = Neat()
     pool = GenePool(options, _selection(options), 3, 2, np.random.default_rng(seed))
     config = pool.config
@@ -96,27 +96,27 @@ def test_it_evolves_as_neat_pythons_own_loop(seed: int) -> None:
 def test_asking_twice_is_refused() -> None:
     run = start()
     run.ask()
-    with pytest.raises(RuntimeError, match=r"ask\(\) again before tell\(\)"):
+    with pytest.raises(RuntimeError, match=r"^ask\(\) .*tell\(\)"):
         run.ask()
 
 
 def test_telling_without_asking_is_refused() -> None:
     run = start(size=3)
-    with pytest.raises(RuntimeError, match=r"tell\(\) without ask\(\)"):
+    with pytest.raises(RuntimeError, match=r"^tell\(\) .*ask\(\)"):
         run.tell(np.zeros(3), {})
     run.ask()
     run.tell(np.zeros(3), {})
-    with pytest.raises(RuntimeError, match=r"tell\(\) without ask\(\)"):
+    with pytest.raises(RuntimeError, match=r"^tell\(\) .*ask\(\)"):
         run.tell(np.zeros(3), {})
 
 
 @pytest.mark.parametrize(
     ("fitness", "message"),
     [
-        ([1.0, 2.0], r"expected fitness of shape \(3,\), got \(2,\)"),
-        ([[1.0, 2.0, 3.0]], r"got \(1, 3\)"),
-        ([1.0, float("nan"), 2.0], "finite, got nan"),
-        ([1.0, float("-inf"), 2.0], "finite, got -inf"),
+        ([1.0, 2.0], r"\(3,\), found \(2,\)"),
+        ([[1.0, 2.0, 3.0]], r"\(3,\), found \(1, 3\)"),
+        ([1.0, float("nan"), 2.0], "finite .* nan"),
+        ([1.0, float("-inf"), 2.0], "finite .* -inf"),
     ],
 )
 def test_bad_fitness_is_refused_and_changes_nothing(fitness: Any, message: str) -> None:
@@ -128,7 +128,7 @@ def test_bad_fitness_is_refused_and_changes_nothing(fitness: Any, message: str) 
     assert run.state() == before
 
 
-def test_members_say_what_is_known() -> None:
+def test_members_have_the_properties_of_their_genomes() -> None:
     run = start(node_add=0.9)
     for _ in range(12):
         told = turn(run)
@@ -155,7 +155,7 @@ def test_age_counts_the_turns_of_an_elite() -> None:
         run.tell(np.array([1.0 if genome.key == 1 else 0.0 for genome in genomes]), {})
 
 
-def test_fitness_at_the_end_of_the_floats_is_survived() -> None:
+def test_extreme_fitness_does_not_overflow() -> None:
     run = start(size=6)
     for sign in (1, -1) * 10:
         run.ask()
@@ -224,7 +224,7 @@ def test_the_hash_seed_of_python_does_not_matter() -> None:
     assert outcome("0") == outcome("1") == outcome("31337")
 
 
-def test_two_populations_interleaved_equal_each_alone_and_leave_the_global_random_alone() -> None:
+def test_interleaved_populations_equal_each_alone_and_do_not_change_the_global_random_state() -> None:
     alone = {seed: [turn(run) for run in [start(seed)] for _ in range(15)] for seed in (1, 2)}
     random.seed(7)
     expected = [random.random() for _ in range(30)]
@@ -239,7 +239,7 @@ def test_two_populations_interleaved_equal_each_alone_and_leave_the_global_rando
     assert drawn == expected
 
 
-def test_starting_takes_one_draw_of_the_generator_and_never_another() -> None:
+def test_the_generator_is_drawn_from_once_at_the_start() -> None:
     rng, drawn = np.random.default_rng(0), np.random.default_rng(0)
     run = Neat().start(3, 2, 25, rng)
     drawn.bytes(32)
@@ -250,13 +250,13 @@ def test_starting_takes_one_draw_of_the_generator_and_never_another() -> None:
 
 
 @pytest.mark.parametrize("duplicate", [copy.copy, copy.deepcopy, pickle.dumps])
-def test_a_population_cannot_be_copied_behind_its_back(duplicate: Any) -> None:
+def test_a_population_cannot_be_copied(duplicate: Any) -> None:
     run = start(size=3)
-    with pytest.raises(TypeError, match=r"use state\(\) and restore\(\)"):
+    with pytest.raises(TypeError, match=r"state\(\) and restore\(\)"):
         duplicate(run._pool)
 
 
-def test_nothing_grows_for_ever() -> None:
+def test_memory_does_not_grow() -> None:
     run = start()
     for _ in range(30):
         turn(run)
@@ -356,18 +356,22 @@ def test_a_damaged_state_is_refused_and_changes_nothing(damage: Any) -> None:
 
 @pytest.mark.parametrize("state", [None, 3, "x", []])
 def test_a_state_must_be_a_table(state: Any) -> None:
-    with pytest.raises(StructureError, match=r"^state: expected a table, found "):
+    with pytest.raises(StructureError, match=r"^state: ") as caught:
         start().restore(state)
+    [fault] = caught.value.faults
+    assert fault.path == ("state",)
 
 
 def test_every_key_of_a_state_must_be_there_and_no_other() -> None:
     state = start().state()
     keys = list(state)
     for key in keys:
-        with pytest.raises(StructureError, match=f"^state.{key}: is missing$"):
+        with pytest.raises(StructureError) as caught:
             start().restore({other: state[other] for other in keys if other != key})
-    with pytest.raises(StructureError, match=r"^state\.colour: unknown option"):
-        start().restore(state | {"colour": 1})
+        assert [fault.path for fault in caught.value.faults] == [("state", key)]
+    with pytest.raises(StructureError) as caught:
+        start().restore(state | {"color": 1})
+    assert [fault.path for fault in caught.value.faults] == [("state", "color")]
 
 
 def test_all_faults_of_a_state_are_named_with_their_places() -> None:
@@ -377,26 +381,26 @@ def test_all_faults_of_a_state_are_named_with_their_places() -> None:
     put(1.5, "pool", "innovation")(state)
     with pytest.raises(StructureError) as caught:
         start().restore(state)
-    assert [(".".join(fault.path), fault.message) for fault in caught.value.faults] == [
-        ("state.pool.innovation", "expected a whole number, found 1.5"),
-        ("state.cohort.phase", 'expected one of "new", "asked", "told", found "lost"'),
-        ("state.species[0].id", "must be >= 1, found 0"),
-    ]
+    faults = {".".join(fault.path): fault.message for fault in caught.value.faults}
+    assert [*faults] == ["state.pool.innovation", "state.cohort.phase", "state.species[0].id"]
+    assert "found 1.5" in faults["state.pool.innovation"]
+    assert '"new", "asked", "told", found "lost"' in faults["state.cohort.phase"]
+    assert ">= 1, found 0" in faults["state.species[0].id"]
 
 
 def test_a_fault_of_a_genome_is_named_with_its_place() -> None:
     state = start().state()
     put("1", *LINK, "weight")(state)
-    place = r"^state\.cohort\.members\[0\]\.genome\.connections\[0\]\.weight: expected a number"
+    place = r"^state\.cohort\.members\[0\]\.genome\.connections\[0\]\.weight: "
     with pytest.raises(StructureError, match=place):
         start().restore(state)
 
 
-def test_ids_in_use_are_not_given_again() -> None:
+def test_ids_in_use_are_not_assigned_again() -> None:
     for key in ("next_genome", "next_node"):
         state = start().state()
         state["pool"][key] -= 1
-        with pytest.raises(ValueError, match=rf"^state\.pool\.{key}: must be > {state['pool'][key]}, found "):
+        with pytest.raises(ValueError, match=rf"^state\.pool\.{key}: .*> {state['pool'][key]}, "):
             start().restore(state)
 
 

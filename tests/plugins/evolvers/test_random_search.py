@@ -49,7 +49,7 @@ def test_fitness_does_not_matter() -> None:
         assert turn(one, 0.0) == turn(other, float(number))
 
 
-def test_without_mutations_genomes_begin_as_in_the_paper() -> None:
+def test_without_mutations_genomes_are_the_initial_ones_of_the_paper() -> None:
     run = start()
     for _ in range(4):
         for genome in turn(run):
@@ -80,5 +80,5 @@ def test_a_run_saved_after_every_turn_is_the_uninterrupted_one(mutations: int) -
 
 def test_the_state_of_another_evolver_is_refused() -> None:
     state = Neat().start(3, 2, 25, np.random.default_rng(0)).state()
-    with pytest.raises(ValueError, match=r'state\.evolver: expected one of "random", found "neat"'):
+    with pytest.raises(ValueError, match=r'state\.evolver: .*"random", found "neat"'):
         start().restore(state)

@@ -1,4 +1,4 @@
-"""The executors that are offered."""
+"""The names of the built-in executors."""
 
 from evoframe_executors import Processes, Serial, Threads, evoframe_executors
 

@@ -1,4 +1,4 @@
-"""Threads: who works on what, and what becomes of it when something fails, hangs or is interrupted."""
+"""Threads: distribution of the items, failures, time limits and interrupts."""
 
 import itertools
 import os
@@ -54,28 +54,28 @@ def threads_used(executor: Executor) -> set[int]:
         run.close()
 
 
-def test_one_worker_is_the_thread_that_asks() -> None:
+def test_a_single_worker_is_the_calling_thread() -> None:
     assert Threads(workers=1).start().workers == 1
     assert threads_used(Threads(workers=1)) == {threading.get_ident()}
 
 
-def test_several_workers_work_at_once() -> None:
+def test_several_workers_run_in_parallel() -> None:
     run = Threads(workers=3).start()
-    meeting = threading.Barrier(3, timeout=10)  # nobody passes before all three are there
+    meeting = threading.Barrier(3, timeout=10)  # no thread passes until all three have arrived
     try:
         assert sorted(run.map(lambda _: meeting.wait(), range(3))) == [0, 1, 2]
     finally:
         run.close()
 
 
-def test_threads_are_gone_after_close() -> None:
+def test_threads_end_with_close() -> None:
     before = threading.active_count()
     threads_used(Threads(workers=4))
     assert threading.active_count() == before
 
 
 @pytest.mark.parametrize(("cores", "workers"), [(6, 6), (1, 1), (None, 1)])
-def test_zero_workers_is_one_for_each_core_of_the_process(
+def test_zero_workers_is_one_per_core_of_the_process(
     monkeypatch: pytest.MonkeyPatch, cores: int | None, workers: int
 ) -> None:
     monkeypatch.setattr(os, "process_cpu_count", lambda: cores, raising=False)
@@ -101,21 +101,21 @@ def test_without_affinity_all_cores_count(monkeypatch: pytest.MonkeyPatch) -> No
     run.close()
 
 
-def test_after_a_failure_nothing_new_is_begun(two_threads: ExecutorRun) -> None:
-    begun = []
+def test_after_a_failure_no_new_item_is_started(two_threads: ExecutorRun) -> None:
+    started = []
 
     def fail_at_once(item: int) -> None:
-        begun.append(item)
+        started.append(item)
         if item == 0:
             raise ZeroDivisionError
         time.sleep(0.02)
 
     with pytest.raises(ZeroDivisionError):
         two_threads.map(fail_at_once, range(1000))
-    assert len(begun) < 100
+    assert len(started) < 100
 
 
-def test_after_a_failure_nothing_goes_on(two_threads: ExecutorRun) -> None:
+def test_after_a_failure_no_work_continues(two_threads: ExecutorRun) -> None:
     finished = []
 
     def slow_or_failing(item: int) -> None:
@@ -131,24 +131,24 @@ def test_after_a_failure_nothing_goes_on(two_threads: ExecutorRun) -> None:
     assert finished == so_far
 
 
-def test_the_first_items_are_worked_on_while_the_next_are_made(two_threads: ExecutorRun) -> None:
-    begun = threading.Event()
+def test_the_first_items_are_processed_while_the_next_are_created(two_threads: ExecutorRun) -> None:
+    started = threading.Event()
 
     def items() -> Iterator[Callable[[], object]]:
-        yield begun.set
-        assert begun.wait(timeout=10)
-        yield begun.is_set
+        yield started.set
+        assert started.wait(timeout=10)
+        yield started.is_set
 
     assert two_threads.map(lambda item: item(), items()) == [None, True]
 
 
-def test_after_a_failure_no_more_items_are_asked_for(two_threads: ExecutorRun) -> None:
+def test_after_a_failure_no_more_items_are_requested(two_threads: ExecutorRun) -> None:
     with pytest.raises(ZeroDivisionError):
         two_threads.map(lambda item: 1 / item, itertools.repeat(0))
 
 
 @pytest.mark.parametrize("error", [KeyError, KeyboardInterrupt])
-def test_when_items_cannot_be_made_nothing_goes_on(
+def test_if_creating_an_item_fails_no_work_continues(
     two_threads: ExecutorRun, error: type[BaseException]
 ) -> None:
     finished = []
@@ -168,7 +168,7 @@ def test_when_items_cannot_be_made_nothing_goes_on(
     assert finished == so_far
 
 
-def test_what_failed_before_an_item_that_cannot_be_made_is_raised(two_threads: ExecutorRun) -> None:
+def test_an_earlier_failure_takes_precedence_over_one_in_creating_an_item(two_threads: ExecutorRun) -> None:
     def slow_failure(_: int) -> None:
         time.sleep(0.02)
         raise ZeroDivisionError
@@ -181,11 +181,11 @@ def test_what_failed_before_an_item_that_cannot_be_made_is_raised(two_threads: E
         two_threads.map(slow_failure, items())
 
 
-def test_an_interrupt_while_items_are_made_drops_the_rest(two_threads: ExecutorRun) -> None:
-    begun = []
+def test_an_interrupt_while_items_are_created_drops_the_rest(two_threads: ExecutorRun) -> None:
+    started = []
 
     def work(item: int) -> None:
-        begun.append(item)
+        started.append(item)
         time.sleep(0.02)
 
     def items() -> Iterator[int]:
@@ -194,14 +194,14 @@ def test_an_interrupt_while_items_are_made_drops_the_rest(two_threads: ExecutorR
 
     with pytest.raises(KeyboardInterrupt):
         two_threads.map(work, items())
-    assert len(begun) < 100
+    assert len(started) < 100
 
 
 def test_an_interrupt_while_the_caller_helps_drops_the_rest() -> None:
-    caller, begun = threading.get_ident(), []
+    caller, started = threading.get_ident(), []
 
     def work(item: int) -> None:
-        begun.append(item)
+        started.append(item)
         time.sleep(0.02)
         if threading.get_ident() == caller:
             raise KeyboardInterrupt
@@ -212,29 +212,28 @@ def test_an_interrupt_while_the_caller_helps_drops_the_rest() -> None:
             run.map(work, range(1000))
     finally:
         run.close()
-    assert len(begun) < 100
+    assert len(started) < 100
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_a_thread_that_hangs_is_reported_and_left_alone(workers: int) -> None:
-    mended = threading.Event()
+def test_a_hanging_thread_is_reported_and_abandoned(workers: int) -> None:
+    released = threading.Event()
     run = Threads(workers=workers, batch_time_limit=0.2).start()
 
     def work(item: int) -> None:
         if item == 3:
-            mended.wait(60)
+            released.wait(60)
 
     try:
-        message = r"^took longer than executor\.batch_time_limit = 0\.2 seconds$"
-        with pytest.raises(WorkerError, match=message) as caught:
+        with pytest.raises(WorkerError, match=r"executor\.batch_time_limit = 0\.2 s") as caught:
             run.map(work, range(10))
         assert caught.value.item == 3
     finally:
         run.close()
-        mended.set()
+        released.set()
 
 
-def test_time_counts_from_when_a_thread_begins() -> None:
+def test_the_time_limit_counts_from_the_start_of_an_item() -> None:
     run = Threads(workers=1, batch_time_limit=0.5).start()
     try:
         assert run.map(lambda _: time.sleep(0.1), range(10)) == [None] * 10
@@ -249,11 +248,11 @@ def fail_if_odd(item: int) -> int:
 
 
 @given(st.permutations(range(6)))
-def test_only_what_stands_behind_a_failure_is_dropped(order: list[int]) -> None:
+def test_only_tasks_after_a_failure_are_dropped(order: list[int]) -> None:
     batch = _Batch(fail_if_odd)
     tasks = [batch.add(item) for item in range(6)]
     failed: list[int] = []
-    for place in order:  # in whatever order threads come to begin them
+    for place in order:  # in any order in which threads may start them
         tasks[place].work()
         assert tasks[place].future.cancelled() == any(other < place for other in failed)
         if place % 2 and not tasks[place].future.cancelled():
@@ -263,10 +262,10 @@ def test_only_what_stands_behind_a_failure_is_dropped(order: list[int]) -> None:
         tasks[1].future.result()
 
 
-def test_a_task_is_worked_on_once() -> None:
-    run, begun = Threads(workers=3).start(), list[int]()
+def test_each_task_is_processed_once() -> None:
+    run, started = Threads(workers=3).start(), list[int]()
     try:
-        run.map(begun.append, range(1000))
+        run.map(started.append, range(1000))
     finally:
         run.close()
-    assert sorted(begun) == list(range(1000))
+    assert sorted(started) == list(range(1000))

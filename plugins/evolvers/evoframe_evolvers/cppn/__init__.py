@@ -1,9 +1,9 @@
-"""Genomes that encode CPPNs, whatever evolves them.
+"""Genomes that encode CPPNs, independent of the evolver.
 
 From the bottom up: :mod:`.documents` reads and writes genomes as JSON values and expresses them as networks,
-:mod:`.graphs` draws them, :mod:`.options` has the options that evolvers share, :mod:`.randomness` gives each
-population a random stream of its own, :mod:`.genomes` is the pool that genomes come from, :mod:`.cohort` the
-present generation, and :mod:`.network_run` has all of an evolver but its selection.
+:mod:`.graphs` converts them to graphs for figures, :mod:`.options` defines the options that evolvers share,
+:mod:`.randomness` gives each population its own random stream, :mod:`.genomes` is the pool that creates
+genomes, :mod:`.cohort` the current generation, and :mod:`.network_run` an evolver without its selection.
 """
 
 from evoframe_evolvers.cppn.cohort import Cohort, SavedCohort

@@ -1,4 +1,4 @@
-"""The present generation: its genomes, their ages and their fitness."""
+"""The current generation: its genomes, their ages and their fitness."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evoframe import Member
 __all__ = ["Cohort", "SavedCohort"]
 
 FITNESS_LIMIT = 1e100
-"""neat-python adds and subtracts fitnesses without a thought of overflow."""
+"""Largest absolute fitness passed to neat-python, whose sums and differences could overflow."""
 
 
 @attrs.frozen
@@ -36,14 +36,14 @@ class SavedCohort:
 
 @attrs.define
 class Cohort:
-    """The present generation of a population.
+    """The current generation of a population.
 
     Attributes:
         genomes: Id -> genome, in the order of :meth:`ask`.
-        generation: How many generations came before.
-        born: Id -> the generation in which the genome came into being.
-        fitness: Id -> the latest fitness, where there is one.
-        phase: ``new`` until asked for, then ``asked`` until told about, then ``told``.
+        generation: Number of generations before this one.
+        born: Id -> generation in which the genome was created.
+        fitness: Id -> latest fitness; evaluated genomes only.
+        phase: ``new`` before :meth:`ask`, then ``asked``, and ``told`` after :meth:`tell`.
     """
 
     genomes: dict[int, Any]
@@ -61,31 +61,31 @@ class Cohort:
         return self.phase == "told"
 
     def ask(self) -> list[Any]:
-        """Hand out the genomes, once."""
+        """Return the genomes; they can be requested once."""
         if self.phase != "new":
-            raise RuntimeError("ask() again before tell(): the fitness of the last genomes is missing")
+            raise RuntimeError("ask() called again before tell(): the last genomes have no fitness yet")
         self.phase = "asked"
         return list(self.genomes.values())
 
     def tell(self, fitness: NDArray[np.float64]) -> None:
-        """Note the *fitness* of the genomes, in the order of :meth:`ask`."""
+        """Store the *fitness* of the genomes, in the order of :meth:`ask`."""
         if self.phase != "asked":
-            raise RuntimeError("tell() without ask(): there are no genomes to be told about")
+            raise RuntimeError("tell() called before ask(): no genomes are waiting for fitness")
         values = np.asarray(fitness, dtype=np.float64)
         if values.shape != (len(self.genomes),):
-            raise ValueError(f"expected fitness of shape ({len(self.genomes)},), got {values.shape}")
+            raise ValueError(f"expected fitness of shape ({len(self.genomes)},), found {values.shape}")
         if not np.isfinite(values).all():
-            raise ValueError(f"fitness must be finite, got {values[~np.isfinite(values)][0]} for a genome")
+            raise ValueError(f"expected finite fitness, found {values[~np.isfinite(values)][0]}")
         for genome, value in zip(self.genomes.values(), values.tolist(), strict=True):
-            self._note(genome, value)
+            self._set_fitness(genome, value)
         self.phase = "told"
 
-    def _note(self, genome: Any, fitness: float) -> None:
+    def _set_fitness(self, genome: Any, fitness: float) -> None:
         self.fitness[genome.key] = fitness
         genome.fitness = min(max(fitness, -FITNESS_LIMIT), FITNESS_LIMIT)
 
     def succeed(self, genomes: Mapping[int, Any]) -> None:
-        """Make *genomes* the next generation; those that were here before keep fitness and age."""
+        """Replace the generation by *genomes*; survivors keep their fitness and age."""
         self.generation += 1
         self.genomes = dict(genomes)
         self.born = {key: self.born.get(key, self.generation) for key in genomes}
@@ -93,7 +93,7 @@ class Cohort:
         self.phase = "new"
 
     def members(self, species: Callable[[int], int | None]) -> list[Member]:
-        """Return the members; *species* says to which one an id belongs."""
+        """Return the members; *species* returns the species of a genome id."""
         return [
             Member(
                 id=key,
@@ -118,28 +118,34 @@ class Cohort:
 
     @classmethod
     def from_state(cls, saved: SavedCohort, genomes: Sequence[Any], size: int) -> Cohort:
-        """Return the cohort that :meth:`state` was taken of.
+        """Return the cohort from which :meth:`state` created *saved*.
 
         Args:
             saved: The document.
-            genomes: The genomes of its members, in their order.
-            size: Number of members of the population.
+            genomes: Genomes of its members, in the same order.
+            size: Population size.
 
         Raises:
-            ValueError: The members are not such a population, or contradict each other.
+            ValueError: The population size differs, or members contradict each other.
         """
         cohort = cls({genome.key: genome for genome in genomes}, saved.generation)
         if len(genomes) != size or len(cohort.genomes) != size:
             raise ValueError(
-                f"expected {size} different genomes, got {len(cohort.genomes)} of {len(genomes)}"
+                f"expected {size} genomes with different ids, found {len(genomes)} genomes with "
+                f"{len(cohort.genomes)} different ids"
             )
         for genome, member in zip(genomes, saved.members, strict=True):
             if member.born > saved.generation:
-                raise ValueError(f"genome {genome.key} is born in the future")
+                raise ValueError(
+                    f"genome {genome.key}: born in generation {member.born}, after the current generation "
+                    f"{saved.generation}"
+                )
             cohort.born[genome.key] = member.born
             if member.fitness is not None:
-                cohort._note(genome, member.fitness)
+                cohort._set_fitness(genome, member.fitness)
         if saved.phase == "told" and len(cohort.fitness) < size:
-            raise ValueError("a genome that was told about has no fitness")
+            raise ValueError(
+                f"expected a fitness for all {size} genomes in phase 'told', found {len(cohort.fitness)}"
+            )
         cohort.phase = saved.phase
         return cohort

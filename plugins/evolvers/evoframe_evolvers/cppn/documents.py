@@ -1,4 +1,4 @@
-"""Genomes as JSON values, perhaps from a file of anyone, and the networks that they encode."""
+"""Genomes as JSON values, possibly from an untrusted file, and the networks that they encode."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Path: TypeAlias = tuple[str, ...]
 
 
 def known_activation(_instance: Any, _attribute: Any, name: str) -> None:
-    """Refuse the name of an activation function that no network has; an attrs validator.
+    """Validate that *name* is a known activation function; an attrs validator.
 
     Raises:
-        ValueError: Lists the known ones.
+        ValueError: *name* is unknown; the message lists the known names.
     """
     if name not in ACTIVATIONS:
         raise ValueError(f"unknown activation '{name}'{suggestion(name, ACTIVATIONS, 'known')}")
@@ -40,7 +40,7 @@ class _SavedNode:
 
 @attrs.frozen
 class _SavedConnection:
-    """A saved connection but for the key ``from``, which cannot be a field because it is a keyword."""
+    """A saved connection without its key ``from``, a Python keyword that cannot be a field."""
 
     to: int = attrs.field(validator=ge(0))
     innovation: int = attrs.field(validator=ge(1))
@@ -56,7 +56,7 @@ class _SavedGenome:
 
 
 def dump_genome(genome: Any) -> dict[str, Any]:
-    """Return *genome* as JSON values; the order of genes matters, for neat-python walks through it."""
+    """Return *genome* as JSON values; the order of genes matters, since neat-python iterates over them."""
     return {
         "id": genome.key,
         "nodes": [
@@ -84,15 +84,15 @@ def dump_genome(genome: Any) -> dict[str, Any]:
 
 
 def load_genome(saved: Any, path: Path = ("genome",)) -> Any:
-    """Return the genome that :func:`dump_genome` made *saved* of, which need not encode a network.
+    """Return the genome from which :func:`dump_genome` created *saved*; it need not encode a network.
 
     Args:
         saved: The genome as JSON values.
         path: The keys that lead to it, for messages.
 
     Raises:
-        StructureError: It is not a genome; names the entry that is wrong.
-        ValueError: It has the same gene twice.
+        StructureError: *saved* is not a genome; names the invalid entries.
+        ValueError: *saved* contains the same gene twice.
     """
     document = structure(saved, _SavedGenome, path)
     nodes = [_node(node) for node in document.nodes]
@@ -104,7 +104,7 @@ def load_genome(saved: Any, path: Path = ("genome",)) -> Any:
     genome.nodes = {gene.key: gene for gene in nodes}
     genome.connections = {gene.key: gene for gene in connections}
     if len(genome.nodes) + len(genome.connections) < len(nodes) + len(connections):
-        raise ValueError(f"genome {genome.key} has the same gene twice")
+        raise ValueError(f"genome {genome.key} contains the same gene twice")
     return genome
 
 
@@ -117,7 +117,7 @@ def express(genome: Any, inputs: int, outputs: int) -> CppnNetwork:
     """Return the network that *genome* encodes.
 
     Raises:
-        ValueError: It encodes none with so many *inputs* and *outputs*.
+        ValueError: *genome* does not encode a network with *inputs* and *outputs*.
     """
     return CppnNetwork(inputs, outputs, genome.nodes, enabled_links(genome))
 
@@ -133,7 +133,7 @@ def _connection(saved: Any, path: Path) -> Any:
     without_start = saved
     if isinstance(saved, Mapping):
         without_start = {key: value for key, value in saved.items() if key != "from"}
-    link = structure(without_start, _SavedConnection, path)  # refuses what is not a table
+    link = structure(without_start, _SavedConnection, path)  # raises if *saved* is not a table
     start = structure(saved.get("from"), int, (*path, "from"))
     gene = DefaultConnectionGene((start, link.to), innovation=link.innovation)
     gene.weight, gene.enabled = link.weight, link.enabled

@@ -1,4 +1,4 @@
-"""neat-python's genomes: their configuration from typed options, and what a population of them shares."""
+"""neat-python's genomes: their configuration from typed options, and the state that a population shares."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["NO_SELECTION", "Counter", "GenePool", "SavedPool", "Sections", "neat
 
 @attrs.define
 class Counter:
-    """Counts up like :func:`itertools.count`, but its value can be read and set."""
+    """Counter like :func:`itertools.count` whose value can be read and set."""
 
     value: int
 
@@ -48,7 +48,7 @@ NO_SELECTION: Sections = {
     "DefaultStagnation": {},
     "DefaultReproduction": {},
 }
-"""What neat-python asks for even where it selects nothing."""
+"""Settings of selection that neat-python requires even if it does not select."""
 
 
 @attrs.frozen
@@ -65,19 +65,19 @@ class SavedPool:
 
 
 class GenePool:
-    """Where the genomes of one population come from.
+    """Source of the genomes of one population.
 
-    It owns neat-python's ``Config`` of the population, the counters that neat-python's objects draw on, and
-    the random stream. The config must not be serialized or copied, for that advances its node counter: save
-    :meth:`state` instead.
+    It owns neat-python's ``Config`` of the population, the counters that neat-python's objects use, and the
+    random stream. Serializing or copying the config would advance its node counter, so save :meth:`state`
+    instead.
 
     Attributes:
         inputs: Number of inputs of a network.
         outputs: Number of outputs of a network.
-        config: neat-python's configuration, of this population only.
-        genome_ids: The ids that genomes will get.
-        node_ids: The ids that hidden nodes will get; neat-python starts them after the outputs.
-        tracker: The innovation numbers of connections.
+        config: neat-python's configuration of this population.
+        genome_ids: Counter of genome ids.
+        node_ids: Counter of hidden node ids; neat-python starts them after the outputs.
+        tracker: Innovation numbers of connections.
         stream: The random stream.
     """
 
@@ -107,21 +107,21 @@ class GenePool:
         return express(genome, self.inputs, self.outputs)
 
     def load(self, saved: Any, path: tuple[str, ...]) -> Any:
-        """Return the genome that :func:`dump_genome` made *saved* of.
+        """Return the genome from which :func:`dump_genome` created *saved*.
 
         Args:
             saved: The genome as JSON values.
             path: The keys that lead to it, for messages.
 
         Raises:
-            ValueError: It is not a genome, or does not fit this population.
+            ValueError: *saved* is not a genome, or does not fit this population.
         """
         genome = load_genome(saved, path)
         self.express(genome)
         return genome
 
     def state(self) -> dict[str, Any]:
-        """Return everything but genomes as JSON values."""
+        """Return everything except the genomes as JSON values."""
         innovations = self.tracker.generation_innovations
         return {
             "inputs": self.inputs,
@@ -138,15 +138,16 @@ class GenePool:
 
         Args:
             saved: The document.
-            genomes: The genomes that were in use then; none of their ids may be given again.
+            genomes: The genomes in use when *saved* was created; their ids must not be assigned again.
 
         Raises:
-            ValueError: It is of another population, or contradicts the genomes; the pool stays as it is.
+            ValueError: *saved* belongs to a different population, or contradicts the genomes; the pool is
+                unchanged.
         """
         shape = saved.inputs, saved.outputs
         if shape != (self.inputs, self.outputs):
             raise ValueError(
-                f"expected networks of {(self.inputs, self.outputs)} inputs and outputs, got {shape}"
+                f"expected networks of {(self.inputs, self.outputs)} inputs and outputs, found {shape}"
             )
         _check_unused("next_genome", saved.next_genome, [genome.key for genome in genomes])
         nodes = [key for genome in genomes for key in genome.nodes]
@@ -160,13 +161,13 @@ class GenePool:
 
 
 def _check_unused(key: str, value: int, used: Collection[int]) -> None:
-    """Refuse a next id that is not above all ids in use."""
+    """Require that the next id is greater than all ids in use."""
     if value <= max(used):
         raise ValueError(f"state.pool.{key}: must be > {max(used)}, found {value}")
 
 
 def _neat_config(sections: Sections) -> Any:
-    """Return neat-python's configuration, which it only reads from an ini file."""
+    """Return neat-python's configuration; it can only be read from an ini file."""
     parser = ConfigParser()
     parser.read_dict(sections)
     with TemporaryDirectory(prefix="evoframe-neat-") as folder:
@@ -220,11 +221,11 @@ _FIXED: Mapping[str, Any] = {
 
 
 def neat_sections(options: GenomeOptions, selection: Sections, inputs: int, outputs: int) -> Sections:
-    """Return the whole configuration for neat-python, which ignores keys that it does not know."""
+    """Return the complete configuration for neat-python, which ignores unknown keys."""
     return {
         **selection,
         "NEAT": {
-            "pop_size": 1,  # the evolver says at each call how many
+            "pop_size": 1,  # not used: the evolver passes the size with each call
             "fitness_criterion": "max",
             "fitness_threshold": 0.0,
             "no_fitness_termination": True,

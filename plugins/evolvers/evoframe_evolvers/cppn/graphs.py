@@ -11,21 +11,21 @@ __all__ = ["genome_graph"]
 
 
 def genome_graph(saved: Any, inputs: int, outputs: int) -> NetworkGraph:
-    """Return the network of a saved genome: nodes by the names of their activations, enabled links only.
+    """Return the graph of a saved genome: nodes labeled by their activations, enabled links only.
 
-    The order of genes does not matter; labels and links are sorted by the ids of nodes. Ids are those of
-    neat-python: inputs are -1, -2, ... and outputs 0, 1, ...
+    The order of genes does not matter: labels and links are sorted by node ids. Ids are those of neat-python:
+    inputs are -1, -2, ... and outputs 0, 1, ...
 
     Args:
-        saved: The genome as it was dumped, perhaps from a file of anyone.
+        saved: The dumped genome, possibly from an untrusted file.
         inputs: Number of inputs of the network.
         outputs: Number of outputs of the network.
 
     Raises:
-        ValueError: It is not a genome, or does not encode a network with so many inputs and outputs.
+        ValueError: *saved* is not a genome, or does not encode a network with *inputs* and *outputs*.
     """
     genome = load_genome(saved)
-    express(genome, inputs, outputs)  # refuses cycles, and links and outputs without a node
+    express(genome, inputs, outputs)  # raises for cycles, and for links and outputs without a node
     return NetworkGraph(
         inputs=tuple(range(-1, -inputs - 1, -1)),
         outputs=tuple(range(outputs)),

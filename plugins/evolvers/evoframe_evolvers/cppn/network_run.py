@@ -1,4 +1,4 @@
-"""Evolution of networks, but for how the next generation comes about."""
+"""Evolution of networks without the reproduction, which subclasses add."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["NetworkRun"]
 
 
 class NetworkRun(ABC):
-    """An evolver at work on the genomes of a pool; a subclass sets pool, size and first cohort."""
+    """Base of the evolution of genomes of a pool; subclasses set the pool, the size and the first cohort."""
 
     _pool: GenePool
     _cohort: Cohort
@@ -26,24 +26,24 @@ class NetworkRun(ABC):
 
     @abstractmethod
     def _succeed(self) -> None:
-        """Replace the cohort, of which the fitness is known, by the next generation."""
+        """Replace the evaluated cohort by the next generation."""
 
     def _species(self, genome_id: int) -> int | None:  # noqa: ARG002
-        """Return the species of a genome, if there are any."""
+        """Return the species of a genome; ``None`` for evolvers without species."""
         return None
 
     def ask(self) -> Sequence[Any]:
-        """Return the genomes to evaluate: first the initial ones, later those that follow."""
+        """Return the genomes to evaluate: first the initial ones, then those of the next generation."""
         if self._cohort.finished:
             self._succeed()
         return self._cohort.ask()
 
     def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:  # noqa: ARG002
-        """Take the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
+        """Store the *fitness* of the genomes of the last :meth:`ask`; *measures* are not used."""
         self._cohort.tell(fitness)
 
     def genomes(self) -> Sequence[Any]:
-        """Return the genomes of :meth:`members`; after :meth:`restore` nobody else has them."""
+        """Return the genomes of :meth:`members`, also after :meth:`restore`."""
         return list(self._cohort.genomes.values())
 
     def members(self) -> Sequence[Member]:

@@ -1,4 +1,4 @@
-"""Options that evolvers of networks share, and how their values are checked."""
+"""Options that evolvers of networks share, and their validation."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ __all__ = [
 def finite(_instance: Any, attribute: attrs.Attribute[float], value: float) -> None:
     """Validate that an option is neither infinite nor NaN."""
     if not math.isfinite(value):
-        raise ValueError(f"{attribute.name} must be a finite number, not {value}")
+        raise ValueError(f"'{attribute.name}' must be a finite number: {value}")
 
 
 def _at_least_one(_instance: Any, attribute: attrs.Attribute[Any], names: tuple[str, ...]) -> None:
     if not names:
-        raise ValueError(f"{attribute.name} must name at least one of {', '.join(ACTIVATIONS)}")
+        raise ValueError(f"'{attribute.name}' must contain at least one of {', '.join(ACTIVATIONS)}: none")
 
 
 def probability(default: float) -> Any:
@@ -42,23 +42,23 @@ def probability(default: float) -> Any:
 
 
 def at_least(least: int, default: int) -> Any:
-    """Return the field of an option that counts something, *least* or more."""
+    """Return the field of an option that is a whole number of at least *least*."""
     return attrs.field(default=default, validator=and_(instance_of(int), ge(least)))
 
 
 @attrs.frozen(kw_only=True)
 class GeneOptions:
-    """How a number in a gene begins and mutates.
+    """Initialization and mutation of a number in a gene.
 
-    In each mutation a number is changed with probability *mutate_rate*, else drawn anew with probability
-    *replace_rate*, else left alone. The defaults are the authors' configuration.
+    A mutation changes the number with probability *mutate_rate*, replaces it by a new value with probability
+    *replace_rate*, and keeps it in all other cases. The defaults are the authors' configuration.
 
     Attributes:
         init_mean: Mean of the normal distribution of new values.
-        init_stdev: Its standard deviation.
-        minimum: Values are clamped from below to this.
-        maximum: Values are clamped from above to this.
-        mutate_power: Standard deviation of the normal distribution that a change is drawn from.
+        init_stdev: Standard deviation of the normal distribution of new values.
+        minimum: Lower bound, to which values are clamped.
+        maximum: Upper bound, to which values are clamped.
+        mutate_power: Standard deviation of the normal distribution of changes.
         mutate_rate: Probability of a change.
         replace_rate: Probability of a new value.
     """
@@ -73,22 +73,24 @@ class GeneOptions:
 
     def __attrs_post_init__(self) -> None:
         if self.minimum > self.maximum:
-            raise ValueError(f"minimum {self.minimum} is above maximum {self.maximum}")
+            raise ValueError(
+                f"expected minimum <= maximum, found minimum = {self.minimum} and maximum = {self.maximum}"
+            )
         if self.mutate_rate + self.replace_rate > 1.0 + 1e-9:  # decimals such as 0.7 + 0.3 are rounded
             raise ValueError(
-                f"mutate_rate {self.mutate_rate} and replace_rate {self.replace_rate} exceed 1 together, "
-                "but a value is either changed or replaced"
+                f"expected mutate_rate + replace_rate <= 1, found mutate_rate = {self.mutate_rate} and "
+                f"replace_rate = {self.replace_rate}; a value is either changed or replaced"
             )
 
 
 @attrs.frozen(kw_only=True)
 class BiasOptions(GeneOptions):
-    """How the bias of a node begins and mutates; see :class:`GeneOptions`."""
+    """Initialization and mutation of the bias of a node; see :class:`GeneOptions`."""
 
 
 @attrs.frozen(kw_only=True)
 class WeightOptions(GeneOptions):
-    """How the weight of a connection begins and mutates; see :class:`GeneOptions`."""
+    """Initialization and mutation of the weight of a connection; see :class:`GeneOptions`."""
 
     mutate_rate: float = probability(0.8)
     replace_rate: float = probability(0.1)
@@ -96,21 +98,22 @@ class WeightOptions(GeneOptions):
 
 @attrs.frozen(kw_only=True)
 class GenomeOptions:
-    """How genomes begin and mutate, whatever selects them.
+    """Initialization and mutation of genomes, independent of selection.
 
-    A genome begins without hidden nodes, every input connected to every output, the activation of every node
-    drawn from *activations*. Networks are feed-forward, inputs are summed, the response of a node is 1.
+    An initial genome has no hidden nodes; every input is connected to every output, and the activation of
+    every node is drawn from *activations*. Networks are feed-forward; nodes sum their inputs and have the
+    response 1.
 
     Attributes:
         activations: Names of the activation functions of nodes (the paper's 23).
-        activation_mutate_rate: Probability that a mutation draws a node's activation anew (paper).
+        activation_mutate_rate: Probability that a mutation redraws the activation of a node (paper).
         connection_add: Probability that a mutation adds a connection (paper).
-        connection_delete: Probability that it deletes one (paper).
-        node_add: Probability that it splits a connection by a node (paper).
-        node_delete: Probability that it deletes a hidden node (paper).
-        enabled_mutate_rate: Probability that it draws anew whether a connection is enabled (paper).
-        bias: How biases begin and mutate (authors' configuration).
-        weight: How weights begin and mutate (authors' configuration).
+        connection_delete: Probability that a mutation deletes a connection (paper).
+        node_add: Probability that a mutation splits a connection by a new node (paper).
+        node_delete: Probability that a mutation deletes a hidden node (paper).
+        enabled_mutate_rate: Probability that a mutation redraws whether a connection is enabled (paper).
+        bias: Initialization and mutation of biases (authors' configuration).
+        weight: Initialization and mutation of weights (authors' configuration).
     """
 
     activations: tuple[str, ...] = attrs.field(
@@ -126,13 +129,13 @@ class GenomeOptions:
     weight: WeightOptions = attrs.field(factory=WeightOptions, validator=instance_of(WeightOptions))
 
     def provenance(self) -> dict[str, str]:
-        """Return the version of the library that breeds the genomes."""
+        """Return the version of neat-python, which creates and mutates the genomes."""
         return {"neat-python": version("neat-python")}
 
     def graph(self, genome: Any, inputs: int, outputs: int) -> NetworkGraph:
-        """Return what a figure draws of a *genome* that a run has dumped.
+        """Return the graph of a dumped *genome*, for figures.
 
         Raises:
-            ValueError: It is no such genome, or encodes no network with so many inputs and outputs.
+            ValueError: *genome* is not a genome, or does not encode a network with *inputs* and *outputs*.
         """
         return genome_graph(genome, inputs, outputs)

@@ -1,4 +1,4 @@
-"""A random stream of one's own within a library that draws from Python's global one."""
+"""Private random streams for a library that draws from Python's global stream."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ import numpy as np
 __all__ = ["PrivateStream"]
 
 _GLOBAL_RANDOM = threading.Lock()
-"""There is one global stream, so only one population at a time may stand in for it."""
+"""Lock of the global stream, which only one population at a time can replace by its own."""
 
 
 class PrivateStream:
-    """The state of Python's Mersenne Twister that belongs to one population.
+    """State of Python's Mersenne Twister that belongs to one population.
 
-    neat-python calls the functions of the module :mod:`random`. While :meth:`swapped_in` is open, these draw
-    from this stream; afterwards the global stream goes on as if nothing had happened.
+    neat-python calls the functions of the module :mod:`random`. Within :meth:`swapped_in`, they draw from
+    this stream; afterwards the global stream continues unchanged.
     """
 
     def __init__(self, rng: np.random.Generator) -> None:
-        """Seed the stream by one draw from *rng*."""
+        """Seed the stream with one draw from *rng*."""
         seed = int.from_bytes(rng.bytes(32), "little")
         self._state = random.Random(seed).getstate()  # noqa: S311 - evolution, not cryptography
 
     @contextmanager
     def swapped_in(self) -> Iterator[None]:
-        """Let the module :mod:`random` draw from this stream."""
+        """Make the module :mod:`random` draw from this stream."""
         with _GLOBAL_RANDOM:
             outside = random.getstate()
             random.setstate(self._state)
@@ -49,12 +49,12 @@ class PrivateStream:
         """Continue from what :meth:`state` returned.
 
         Raises:
-            ValueError: It is no such state; this stream stays as it is.
+            ValueError: *state* is not such a state; this stream is unchanged.
         """
         twister = random.Random()  # noqa: S311 - evolution, not cryptography
         try:
             version, internal, next_gauss = state
             twister.setstate((version, tuple(internal), None if next_gauss is None else float(next_gauss)))
         except (OverflowError, TypeError, ValueError) as error:
-            raise ValueError(f"not the state of a random stream: {error}") from error
+            raise ValueError(f"state.pool.random: expected the state of a random stream: {error}") from error
         self._state = twister.getstate()

@@ -1,4 +1,4 @@
-"""The present generation: who is in it, how old they are, and what is known of their fitness."""
+"""The current generation: its members, their ages and their fitness."""
 
 from __future__ import annotations
 
@@ -64,10 +64,10 @@ def test_age_and_fitness_are_kept_as_long_as_a_genome_stays(
 def test_a_turn_goes_from_asking_to_telling_to_the_next_generation() -> None:
     cohort = cohort_of(1, 2)
     assert not cohort.finished
-    with pytest.raises(RuntimeError, match=r"tell\(\) without ask\(\)"):
+    with pytest.raises(RuntimeError, match=r"^tell\(\) .*ask\(\)"):
         cohort.tell(np.zeros(2))
     assert [genome.key for genome in cohort.ask()] == [1, 2]
-    with pytest.raises(RuntimeError, match=r"ask\(\) again before tell\(\)"):
+    with pytest.raises(RuntimeError, match=r"^ask\(\) .*tell\(\)"):
         cohort.ask()
     cohort.tell(np.zeros(2))
     assert cohort.finished
@@ -76,7 +76,7 @@ def test_a_turn_goes_from_asking_to_telling_to_the_next_generation() -> None:
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_what_neat_python_sees_is_limited_and_what_is_known_is_not(fitness: float) -> None:
+def test_fitness_is_limited_for_neat_python_only(fitness: float) -> None:
     cohort = cohort_of(1)
     play(cohort, fitness)
     assert cohort.genomes[1].fitness == min(max(fitness, -FITNESS_LIMIT), FITNESS_LIMIT)
@@ -84,7 +84,7 @@ def test_what_neat_python_sees_is_limited_and_what_is_known_is_not(fitness: floa
     assert member.fitness == fitness
 
 
-def test_members_say_their_species_and_their_size() -> None:
+def test_members_have_their_species_and_their_size() -> None:
     [member] = cohort_of(3).members(lambda key: 10 * key)
     assert (member.species, member.genome_size) == (30, 9)
 
@@ -109,37 +109,35 @@ def test_a_saved_cohort_is_the_same_again(turn: str) -> None:
 def test_a_member_of_the_future_is_refused() -> None:
     state = saved(cohort_of(5))
     state["members"][0]["born"] = 1
-    with pytest.raises(ValueError, match="genome 5 is born in the future"):
+    with pytest.raises(ValueError, match=r"genome 5: .*generation 1, .* 0$"):
         again(state)
 
 
 def test_a_told_member_without_fitness_is_refused() -> None:
     state = saved(cohort_of(5)) | {"phase": "told"}
-    with pytest.raises(ValueError, match="a genome that was told about has no fitness"):
+    with pytest.raises(ValueError, match=r"all 1 genomes .*found 0$"):
         again(state)
 
 
 @pytest.mark.parametrize(
-    ("keys", "size", "found"), [((1, 1), 2, "1 of 2"), ((1, 2), 3, "2 of 2"), ((1,), 0, "1 of 1")]
+    ("keys", "size", "found"),
+    [((1, 1), 2, "2 genomes .* 1 "), ((1, 2), 3, "2 genomes .* 2 "), ((1,), 0, "1 genomes .* 1 ")],
 )
 def test_another_number_of_genomes_is_refused(keys: tuple[int, ...], size: int, found: str) -> None:
     state = saved(cohort_of(1))
     state["members"] = [state["members"][0] | {"genome": {"id": key}} for key in keys]
-    with pytest.raises(ValueError, match=f"expected {size} different genomes, got {found}"):
+    with pytest.raises(ValueError, match=f"expected {size} genomes .*found {found}"):
         again(state, size)
 
 
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
-        ({"generation": -1}, r"cohort\.generation: must be >= 0, found -1"),
-        ({"phase": "lost"}, r'cohort\.phase: expected one of "new", "asked", "told", found "lost"'),
-        ({"members": {}}, r"cohort\.members: expected a list, found \{\}"),
-        (
-            {"members": [{"born": True, "fitness": None, "genome": {}}]},
-            r"members\[0\]\.born: expected a whole",
-        ),
-        ({"members": [{"born": 0, "genome": {}}]}, r"members\[0\]\.fitness: is missing"),
+        ({"generation": -1}, r"cohort\.generation: .*>= 0, found -1"),
+        ({"phase": "lost"}, r'cohort\.phase: .*"new", "asked", "told", found "lost"'),
+        ({"members": {}}, r"cohort\.members: .*list, found \{\}"),
+        ({"members": [{"born": True, "fitness": None, "genome": {}}]}, r"members\[0\]\.born: .*whole number"),
+        ({"members": [{"born": 0, "genome": {}}]}, r"members\[0\]\.fitness: .*missing"),
     ],
 )
 def test_a_fault_of_the_document_is_named(change: dict[str, Any], fault: str) -> None:

@@ -1,4 +1,4 @@
-"""Genomes as JSON values: what is dumped is loaded, and what is damaged is refused with its place."""
+"""Genomes as JSON values: dumped genomes can be loaded, damaged ones are refused with the faulty key."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ INPUTS, OUTPUTS = 4, 2
 
 @functools.cache
 def texts() -> tuple[str, ...]:
-    """Genomes of one turn as text, so that no test changes those of another."""
+    """Return the genomes of one turn as text, so that tests cannot change each other's genomes."""
     run = RandomSearch(mutations=40, connection_delete=0.3).start(
         INPUTS, OUTPUTS, 30, np.random.default_rng(0)
     )
@@ -60,7 +60,7 @@ def refusal_of(saved: Any) -> ValueError | None:
 
 
 @given(GENOMES)
-def test_what_is_dumped_is_loaded_in_the_same_order(saved: Any) -> None:
+def test_a_dumped_genome_is_loaded_in_the_same_order(saved: Any) -> None:
     assert json.dumps(dump_genome(load_genome(saved))) == json.dumps(saved)
 
 
@@ -83,7 +83,7 @@ def test_a_wrong_value_is_refused_or_means_the_same(saved: Any, data: st.DataObj
     if isinstance(refusal, StructureError):
         assert all(fault.path[-1].startswith(place[-1]) for fault in refusal.faults)
     elif refusal is not None:
-        assert "has the same gene twice" in str(refusal)
+        assert "gene twice" in str(refusal)
     else:
         assert dump_genome(load_genome(changed)) == changed
 
@@ -92,7 +92,7 @@ def test_a_wrong_value_is_refused_or_means_the_same(saved: Any, data: st.DataObj
 def test_an_unknown_key_is_refused(kind: str) -> None:
     saved = json.loads(texts()[0])
     saved[kind][0]["from_"] = 1
-    with pytest.raises(StructureError, match=rf"^genome\.{kind}\[0\]\.from_: unknown option"):
+    with pytest.raises(StructureError, match=rf"^genome\.{kind}\[0\]\.from_: unknown"):
         load_genome(saved)
 
 
@@ -100,15 +100,15 @@ def test_an_unknown_key_is_refused(kind: str) -> None:
 def test_a_gene_must_be_a_table(kind: str) -> None:
     saved = json.loads(texts()[0])
     saved[kind][0] = "gene"
-    with pytest.raises(StructureError, match=rf'^genome\.{kind}\[0\]: expected a table, found "gene"$'):
+    with pytest.raises(StructureError, match=rf'^genome\.{kind}\[0\]: .*table, found "gene"$'):
         load_genome(saved)
 
 
 @pytest.mark.parametrize("kind", ["nodes", "connections"])
-def test_a_gene_that_is_there_twice_is_refused(kind: str) -> None:
+def test_a_duplicate_gene_is_refused(kind: str) -> None:
     saved = json.loads(texts()[0])
     saved[kind].append(saved[kind][0])
-    with pytest.raises(ValueError, match=f"genome {saved['id']} has the same gene twice"):
+    with pytest.raises(ValueError, match=f"genome {saved['id']} .*gene twice"):
         load_genome(saved)
 
 
@@ -118,11 +118,11 @@ def test_all_faults_of_nodes_are_named() -> None:
     saved["nodes"][1]["bias"] = "0.5"
     with pytest.raises(StructureError) as caught:
         load_genome(saved)
-    assert [(".".join(fault.path), fault.message) for fault in caught.value.faults] == [
-        ("genome.nodes[0].id", "must be >= 0, found -1"),
-        ("genome.nodes[0].aggregation", 'expected one of "sum", found "max"'),
-        ("genome.nodes[1].bias", 'expected a number, found "0.5"'),
-    ]
+    faults = {".".join(fault.path): fault.message for fault in caught.value.faults}
+    assert [*faults] == ["genome.nodes[0].id", "genome.nodes[0].aggregation", "genome.nodes[1].bias"]
+    assert ">= 0, found -1" in faults["genome.nodes[0].id"]
+    assert '"sum", found "max"' in faults["genome.nodes[0].aggregation"]
+    assert 'number, found "0.5"' in faults["genome.nodes[1].bias"]
 
 
 @given(GENOMES)
@@ -148,7 +148,5 @@ def test_a_known_activation_is_accepted(name: str) -> None:
 
 
 def test_an_unknown_activation_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(
-        ValueError, match=r"unknown activation 'sinus'; did you mean 'sin'\? known: sigmoid, tanh"
-    ):
+    with pytest.raises(ValueError, match=r"'sinus'.* 'sin'.*sigmoid, tanh"):
         known_activation(None, None, "sinus")

@@ -1,4 +1,4 @@
-"""The pool that genomes come from: its counters, its configuration and its state."""
+"""The pool that creates genomes: its counters, its configuration and its state."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def restore(pool: GenePool, state: Any, genomes: list[Any]) -> None:
 
 
 @given(st.integers(), st.integers(0, 20))
-def test_a_counter_counts_on_from_its_value(start: int, steps: int) -> None:
+def test_a_counter_continues_from_its_value(start: int, steps: int) -> None:
     counter = Counter(start)
     assert [*itertools.islice(counter, steps)] == [*range(start, start + steps)]
     assert counter.value == start + steps
 
 
 @given(st.integers(1, 5), st.integers(1, 5), st.integers(0, 12), st.integers(0, 99))
-def test_a_restored_pool_goes_on_as_the_saved_one(
+def test_a_restored_pool_continues_as_the_saved_one(
     inputs: int, outputs: int, mutations: int, seed: int
 ) -> None:
     pool, other = pool_of(inputs, outputs, seed), pool_of(inputs, outputs, seed + 1)
@@ -67,7 +67,7 @@ def test_hidden_nodes_are_numbered_after_the_outputs() -> None:
     assert pool.node_ids.value == 7
 
 
-def test_the_global_stream_is_left_alone() -> None:
+def test_the_global_stream_is_not_changed() -> None:
     before = random.getstate()
     draw(pool_of(), 5)
     assert random.getstate() == before
@@ -85,28 +85,28 @@ def test_a_genome_of_another_pool_is_refused() -> None:
         pool_of(inputs=3).load(document, ("genome",))
 
 
-def test_a_fault_of_a_genome_has_the_place_that_it_was_read_from() -> None:
-    with pytest.raises(StructureError, match=r"^here\.there: expected a table, found 3$"):
+def test_a_fault_of_a_genome_names_the_key_that_it_was_read_from() -> None:
+    with pytest.raises(StructureError, match=r"^here\.there: .*found 3$"):
         pool_of().load(3, ("here", "there"))
 
 
 def test_the_state_of_another_shape_is_refused() -> None:
     pool = pool_of()
-    with pytest.raises(ValueError, match=r"expected networks of \(3, 2\) inputs and outputs, got \(4, 2\)"):
+    with pytest.raises(ValueError, match=r"\(3, 2\) .*\(4, 2\)"):
         restore(pool, saved(pool_of(inputs=4)), [draw(pool)])
 
 
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
-        ({"next_genome": 1}, "next_genome: must be > 1, found 1"),
-        ({"next_node": 1}, "next_node: must be > 1, found 1"),
-        ({"next_node": 2.0}, r"next_node: expected a whole number, found 2\.0"),
-        ({"innovation": -1}, "innovation: must be >= 0, found -1"),
-        ({"innovations": [[1, 2, 3, 4]]}, r"innovations\[0\]\[2\]: expected a string, found 3"),
-        ({"innovations": [[1, 2, "add"]]}, r"innovations\[0\]: expected a list of 4"),
-        ({"random": [3, [], None]}, "not the state of a random stream"),
-        ({"random": None}, "not the state of a random stream"),
+        ({"next_genome": 1}, "next_genome: .*> 1, found 1"),
+        ({"next_node": 1}, "next_node: .*> 1, found 1"),
+        ({"next_node": 2.0}, r"next_node: .*found 2\.0"),
+        ({"innovation": -1}, "innovation: .*>= 0, found -1"),
+        ({"innovations": [[1, 2, 3, 4]]}, r"innovations\[0\]\[2\]: .*found 3"),
+        ({"innovations": [[1, 2, "add"]]}, r"innovations\[0\]: .* 4"),
+        ({"random": [3, [], None]}, r"state\.pool\.random: "),
+        ({"random": None}, r"state\.pool\.random: "),
     ],
 )
 def test_a_damaged_state_is_refused_and_changes_nothing(change: dict[str, Any], fault: str) -> None:

@@ -15,7 +15,7 @@ INPUTS, OUTPUTS = 4, 2
 
 @functools.cache
 def saved_genomes() -> tuple[str, ...]:
-    """Genomes of some generations as text, so that no test changes those of another."""
+    """Return the genomes of one turn as text, so that tests cannot change each other's genomes."""
     run = RandomSearch(mutations=40, connection_delete=0.3).start(
         INPUTS, OUTPUTS, 30, np.random.default_rng(0)
     )
@@ -30,7 +30,7 @@ def graph_of(genome: Any, inputs: int = INPUTS, outputs: int = OUTPUTS) -> Netwo
 
 
 @given(GENOMES)
-def test_nodes_are_labelled_by_their_activations(genome: Any) -> None:
+def test_nodes_are_labeled_by_their_activations(genome: Any) -> None:
     assert graph_of(genome).labels == {node["id"]: node["activation"] for node in genome["nodes"]}
 
 
@@ -50,7 +50,7 @@ def test_the_order_of_genes_does_not_matter(genome: Any, data: st.DataObject) ->
 
 
 @given(GENOMES)
-def test_an_input_without_a_connection_is_there(genome: Any) -> None:
+def test_an_input_without_a_connection_is_included(genome: Any) -> None:
     genome["connections"] = [gene for gene in genome["connections"] if gene["from"] != -2]
     graph = graph_of(genome)
     assert graph.inputs == (-1, -2, -3, -4)
@@ -59,7 +59,7 @@ def test_an_input_without_a_connection_is_there(genome: Any) -> None:
 
 
 @given(GENOMES)
-def test_both_evolvers_draw_the_same(genome: Any) -> None:
+def test_both_evolvers_return_the_same_graph(genome: Any) -> None:
     assert RandomSearch().graph(genome, INPUTS, OUTPUTS) == graph_of(genome)
 
 
@@ -70,24 +70,21 @@ def with_gene(genes: str, **changes: Any) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("genome", "words"),
+    ("genome", "fault"),
     [
-        (None, "genome: expected a table, found null"),
-        ({"id": 1, "nodes": 3}, r"genome\.nodes: expected a list, found 3; genome\.connections: is missing"),
-        (with_gene("nodes", activation="cosine"), r"nodes\[0\]\.activation: unknown activation 'cosine'"),
-        (with_gene("nodes", bias=10**400), r"nodes\[0\]\.bias: int too large to convert to float"),
+        (None, "genome: .*found null"),
+        ({"id": 1, "nodes": 3}, r"genome\.nodes: .*found 3; genome\.connections: .*missing"),
+        (with_gene("nodes", activation="cosine"), r"nodes\[0\]\.activation: .*'cosine'"),
+        (with_gene("nodes", bias=10**400), r"nodes\[0\]\.bias: "),
         (with_gene("nodes", id=7), "-1 -> 0"),
-        (
-            with_gene("connections", weight=float("nan")),
-            r"connections\[0\]\.weight: expected a finite number",
-        ),
+        (with_gene("connections", weight=float("nan")), r"connections\[0\]\.weight: .*finite .*nan"),
         (with_gene("connections", **{"from": -9}), "-9 -> "),
         (with_gene("connections", **{"from": 0, "to": 0}), "cycle"),
-        (with_gene("connections", enabled=1), r"connections\[0\]\.enabled: expected true or false, found 1"),
+        (with_gene("connections", enabled=1), r"connections\[0\]\.enabled: .*found 1"),
     ],
 )
-def test_a_fault_is_named(genome: Any, words: str) -> None:
-    with pytest.raises(ValueError, match=words):
+def test_a_fault_is_named(genome: Any, fault: str) -> None:
+    with pytest.raises(ValueError, match=fault):
         graph_of(genome)
 
 

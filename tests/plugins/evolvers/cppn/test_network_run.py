@@ -8,7 +8,7 @@ from evoframe_evolvers import Neat, RandomSearch
 
 
 def voxels(inputs: int) -> Any:
-    """Return points such as an encoder gives: indices of voxels, and a material code."""
+    """Return points like those of encoders (voxel indices and a material code), and extreme ones."""
     rng = np.random.default_rng(0)
     points = rng.integers(0, [20, 8, 8, 4][:inputs], size=(40, inputs)).astype(np.float64)
     return np.concatenate([points, [[0.0] * inputs, [-1e3] * inputs, [1e50] * inputs]])
@@ -33,7 +33,7 @@ def evolved(evolver: Any, inputs: int, outputs: int, seed: int, turns: int) -> A
 )
 @pytest.mark.parametrize("shape", [(3, 2), (4, 1)])
 @pytest.mark.parametrize("seed", range(4))
-def test_networks_are_neat_pythons(
+def test_networks_equal_those_of_neat_python(
     evolver: Any, turns: int, shape: tuple[int, int], seed: int, neat_network: Any
 ) -> None:
     run = evolved(evolver, *shape, seed, turns)

@@ -10,7 +10,7 @@ from evoframe_evolvers.cppn.genomes import NO_SELECTION, neat_sections
 from evoframe_evolvers.cppn.options import BiasOptions, WeightOptions
 from evoframe_evolvers.neat_evolver import _selection
 
-# The table of paper.md, where it has a word on a key; else what neat-python needs to do what the paper says.
+# The paper's table (docs/experiment.md, "Genomes"), and the settings that neat-python needs to reproduce it.
 PAPER = """
 [NEAT]
 pop_size = 1
@@ -92,12 +92,12 @@ min_species_size = 1
 """
 
 
-def test_neat_python_is_told_the_papers_table() -> None:
+def test_neat_python_is_configured_by_the_papers_table() -> None:
     paper = ConfigParser()
     paper.read_string(PAPER.replace("\n    ", " "))
-    told = ConfigParser()
-    told.read_dict(neat_sections(Neat(), _selection(Neat()), 3, 2))
-    assert {name: dict(told[name]) for name in told} == {name: dict(paper[name]) for name in paper}
+    passed = ConfigParser()
+    passed.read_dict(neat_sections(Neat(), _selection(Neat()), 3, 2))
+    assert {name: dict(passed[name]) for name in passed} == {name: dict(paper[name]) for name in paper}
 
 
 @pytest.mark.parametrize(
@@ -113,11 +113,8 @@ def test_neat_python_is_told_the_papers_table() -> None:
         ({"elitism": -1}, "elitism"),
         ({"min_species_size": 0}, "min_species_size"),
         ({"species_fitness": "best"}, "species_fitness"),
-        ({"activations": ()}, "at least one of sigmoid, tanh"),
-        (
-            {"activations": ("sin", "sinus", "xyz")},
-            "unknown activation 'sinus'; did you mean 'sin'. known: sigmoid, tanh",
-        ),
+        ({"activations": ()}, "'activations' .*sigmoid, tanh.*none$"),
+        ({"activations": ("sin", "sinus", "xyz")}, "'sinus'.* 'sin'.*sigmoid, tanh"),
     ],
 )
 def test_a_bad_value_is_named(options: dict[str, Any], message: str) -> None:
@@ -129,9 +126,9 @@ def test_a_bad_value_is_named(options: dict[str, Any], message: str) -> None:
     ("options", "message"),
     [
         ({"init_stdev": -1.0}, "init_stdev"),
-        ({"init_mean": float("inf")}, "init_mean must be a finite number"),
-        ({"minimum": 2.0, "maximum": 1.0}, "minimum 2.0 is above maximum 1.0"),
-        ({"mutate_rate": 0.8, "replace_rate": 0.3}, "exceed 1 together"),
+        ({"init_mean": float("inf")}, "'init_mean' .* inf"),
+        ({"minimum": 2.0, "maximum": 1.0}, r"minimum = 2\.0 and maximum = 1\.0"),
+        ({"mutate_rate": 0.8, "replace_rate": 0.3}, r"mutate_rate = 0\.8 and replace_rate = 0\.3"),
     ],
 )
 @pytest.mark.parametrize("genes", [BiasOptions, WeightOptions])
@@ -140,7 +137,7 @@ def test_a_bad_value_of_genes_is_named(genes: Any, options: dict[str, Any], mess
         genes(**options)
 
 
-def test_an_integer_option_takes_no_fraction() -> None:
+def test_an_integer_option_does_not_accept_a_fraction() -> None:
     with pytest.raises(TypeError, match="elitism"):
         Neat(elitism=1.5)  # type: ignore[arg-type]  # the mistake under test
 
@@ -148,9 +145,9 @@ def test_an_integer_option_takes_no_fraction() -> None:
 @pytest.mark.parametrize(
     ("options", "size", "message"),
     [
-        ({}, 0, "at least 1 member"),
-        ({}, 2, "elitism 2 leaves no place for offspring in a population of 2"),
-        ({"min_species_size": 5}, 4, "min_species_size 5 of a population of 4"),
+        ({}, 0, "found 0"),
+        ({}, 2, "elitism = 2 .* 2;"),
+        ({"min_species_size": 5}, 4, "min_species_size = 5 .* 4;"),
     ],
 )
 def test_a_population_that_cannot_evolve_is_refused(options: dict[str, Any], size: int, message: str) -> None:
@@ -158,19 +155,19 @@ def test_a_population_that_cannot_evolve_is_refused(options: dict[str, Any], siz
         Neat(**options).check(size)
 
 
-def test_random_search_needs_a_member() -> None:
+def test_random_search_requires_a_member() -> None:
     RandomSearch().check(1)
-    with pytest.raises(ConfigurationError, match="at least 1 member"):
+    with pytest.raises(ConfigurationError, match="found 0"):
         RandomSearch().check(0)
 
 
 @pytest.mark.parametrize("options", [Neat(), RandomSearch()])
-def test_neat_python_is_told_everything_it_knows_and_nothing_else(options: Any) -> None:
-    """It is silent about a key that it does not know, and takes its own default for a missing one."""
+def test_neat_python_receives_exactly_the_keys_that_it_knows(options: Any) -> None:
+    """neat-python ignores unknown keys, and uses its own default for a missing one."""
     selection = _selection(options) if isinstance(options, Neat) else NO_SELECTION
-    told = neat_sections(options, selection, 3, 2)
+    passed = neat_sections(options, selection, 3, 2)
     config = options.start(3, 2, 5, np.random.default_rng(0))._pool.config
-    assert set(told["DefaultGenome"]) == {parameter.name for parameter in config.genome_config._params}
+    assert set(passed["DefaultGenome"]) == {parameter.name for parameter in config.genome_config._params}
     if isinstance(options, Neat):
         parts = {
             "DefaultSpeciesSet": config.species_set_config,
@@ -178,7 +175,7 @@ def test_neat_python_is_told_everything_it_knows_and_nothing_else(options: Any) 
             "DefaultReproduction": config.reproduction_config,
         }
         for section, part in parts.items():
-            assert set(told[section]) == {parameter.name for parameter in part._params}
+            assert set(passed[section]) == {parameter.name for parameter in part._params}
 
 
 def test_every_option_reaches_neat_python() -> None:

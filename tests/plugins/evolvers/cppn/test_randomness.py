@@ -1,4 +1,4 @@
-# ruff: noqa: S311 - the point is Python's global generator
+# ruff: noqa: S311 - Python's global generator is under test
 import json
 import random
 import threading
@@ -18,7 +18,7 @@ def draw(own: PrivateStream) -> tuple[float, float]:
         return random.random(), random.gauss(0.0, 1.0)
 
 
-def test_the_global_stream_goes_on_as_if_nothing_had_happened() -> None:
+def test_the_global_stream_continues_unchanged() -> None:
     random.seed(5)
     expected = [random.random(), random.random()]
     random.seed(5)
@@ -27,7 +27,7 @@ def test_the_global_stream_goes_on_as_if_nothing_had_happened() -> None:
     assert [first, random.random()] == expected
 
 
-def test_it_does_so_after_an_error_too() -> None:
+def test_the_global_stream_is_restored_after_an_error() -> None:
     before = random.getstate()
 
     def fail() -> None:
@@ -40,7 +40,7 @@ def test_it_does_so_after_an_error_too() -> None:
     assert random.getstate() == before
 
 
-def test_each_stream_goes_on_where_it_stopped() -> None:
+def test_each_stream_continues_where_it_stopped() -> None:
     alone, one, other = stream(1), stream(1), stream(2)
     expected = [draw(alone) for _ in range(3)]
     interleaved = []
@@ -67,10 +67,10 @@ def test_streams_of_several_threads_do_not_mix() -> None:
     assert found == expected
 
 
-def test_a_saved_stream_goes_on_bit_for_bit() -> None:
+def test_a_restored_stream_continues_bit_for_bit() -> None:
     own, other = stream(1), stream(2)
     with own.swapped_in():
-        random.gauss(0.0, 1.0)  # keeps a second number for the next call
+        random.gauss(0.0, 1.0)  # stores a second number for the next call
     state = own.state()
     assert json.loads(json.dumps(state)) == state
     other.restore(json.loads(json.dumps(state)))
@@ -80,8 +80,8 @@ def test_a_saved_stream_goes_on_bit_for_bit() -> None:
 @pytest.mark.parametrize(
     "state", [None, [], [3, [1, 2], None], [9, [], None], [3, [-1] * 625, None], [3, "x", None]]
 )
-def test_what_is_no_state_is_refused(state: object) -> None:
+def test_an_invalid_state_is_refused(state: object) -> None:
     own, untouched = stream(), stream()
-    with pytest.raises(ValueError, match="not the state of a random stream"):
+    with pytest.raises(ValueError, match=r"state\.pool\.random: "):
         own.restore(state)
     assert draw(own) == draw(untouched)
