@@ -1,4 +1,4 @@
-"""What the tests of several contracts share."""
+"""Functions that the tests of several contracts share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def name_of(value: object) -> str:
-    """Return the name of a law or of a component's class, to tell cases apart."""
+    """Return the name of a law or of a component's class, as the id of a test case."""
     return value if isinstance(value, str) else type(value).__name__
 
 

@@ -9,7 +9,7 @@ Law = str
 
 @pytest.fixture
 def laws() -> Callable[..., list[Law]]:
-    """The names of the laws of a contract."""
+    """Return a function that lists the names of the laws of a contract."""
 
     def listed(contract: type[Any]) -> list[Law]:
         return [name for name in dir(contract) if name.startswith("test_")]
@@ -19,7 +19,7 @@ def laws() -> Callable[..., list[Law]]:
 
 @pytest.fixture
 def keeps() -> Callable[..., None]:
-    """Run one law of a contract on a component; with its failure the test fails."""
+    """Return a function that tests one law of a contract with a component."""
 
     def run(contract: type[Any], component: Any, law: Law, **attributes: Any) -> None:
         subclass = type("TestComponent", (contract,), {"component": component, **attributes})
@@ -30,7 +30,7 @@ def keeps() -> Callable[..., None]:
 
 @pytest.fixture
 def first_failure_only() -> Iterator[None]:
-    """Spare the time that hypothesis takes to find the simplest failure."""
+    """Make hypothesis stop at the first failure, instead of searching for the simplest one."""
     profile = settings.get_current_profile_name()
     settings.register_profile("first-failure-only", phases=[Phase.generate], database=None)
     settings.load_profile("first-failure-only")
@@ -40,7 +40,7 @@ def first_failure_only() -> Iterator[None]:
 
 @pytest.fixture
 def breaks(keeps: Callable[..., None], first_failure_only: None) -> Callable[..., None]:
-    """Make sure that a contract catches a component, by a failed assertion unless told otherwise."""
+    """Return a function that asserts that a law catches a component, by default with a failed assertion."""
 
     def run(
         contract: type[Any],

@@ -15,17 +15,17 @@ from evoframe.testing import AggregatorContract
 COUNTS = "test_numbers_of_collaborators_are_refused_by_a_configuration_error"
 FINITE = "test_the_result_is_finite"
 ORDER = "test_the_order_of_the_scores_is_irrelevant"
-LEFT_ALONE = "test_the_scores_are_left_alone"
+NOT_CHANGED = "test_the_scores_are_not_changed"
 BOUNDED = "test_the_result_lies_within_the_scores"
 IDEMPOTENT = "test_equal_scores_give_that_score"
-MONOTONE = "test_the_result_is_no_less_when_a_score_grows"
+MONOTONE = "test_the_result_does_not_fall_when_a_score_rises"
 EXEMPTIONS = "test_exemptions_name_a_law_and_a_reason"
 EXEMPTIBLE = {"bounded": BOUNDED, "idempotent": IDEMPOTENT, "monotone": MONOTONE}
 
 
 @attrs.frozen
 class Median:
-    """A sound aggregator, and the base of those that are not."""
+    """A valid aggregator, and the base of the broken ones."""
 
     domain: ClassVar[tuple[float, float]] = (-1e100, 1e100)
 
@@ -57,7 +57,7 @@ class First(Median):
 
 
 class UnsortedMean(Median):
-    """Depends on the order in its last bit only."""
+    """Depends on the order of the scores in its last bit only."""
 
     def aggregate(self, scores: Scores) -> float:
         total = 0.0
@@ -83,14 +83,14 @@ class Sum(Median):
 
 
 class Pessimist(Median):
-    """Off by a little more than rounding."""
+    """Deviates by slightly more than rounding errors."""
 
     def aggregate(self, scores: Scores) -> float:
         return float(scores.min()) * (1 - 1e-11)
 
 
 class RiskAverse(Median):
-    """Falls when one score grows beyond the others."""
+    """Falls when one score rises above the others."""
 
     def aggregate(self, scores: Scores) -> float:
         values = np.sort(scores)
@@ -112,7 +112,7 @@ class AcceptsZero(Median):
         pass
 
 
-class RefusesWithoutAWord(Median):
+class RefusesWithoutAMessage(Median):
     def check(self, n: int) -> None:
         if n < 1:
             raise ConfigurationError
@@ -135,7 +135,7 @@ class UpsideDown(Median):
         (UnsortedMean(), ORDER),
         (Product(), FINITE),
         (Integer(), FINITE),
-        (SortsInPlace(), LEFT_ALONE),
+        (SortsInPlace(), NOT_CHANGED),
         (Sum(), BOUNDED),
         (Sum(), IDEMPOTENT),
         (Pessimist(), BOUNDED),
@@ -143,7 +143,7 @@ class UpsideDown(Median):
         (RiskAverse(), MONOTONE),
         (AcceptsNothing(), COUNTS),
         (AcceptsZero(), COUNTS),
-        (RefusesWithoutAWord(), COUNTS),
+        (RefusesWithoutAMessage(), COUNTS),
         (UpsideDown(), "test_the_domain_is_a_range"),
     ],
     ids=name_of,
@@ -157,7 +157,7 @@ def test_a_refusal_by_another_error_is_caught(breaks: Callable[..., None]) -> No
 
 
 class LawfulOnItsDomain(Median):
-    """Breaks every law for negative scores, none for positive ones."""
+    """Breaks every law for negative scores, but none for positive ones."""
 
     domain = (0.0, 1e100)
 

@@ -15,24 +15,24 @@ ROLES = "test_every_network_gives_the_declared_roles"
 SHAPES = "test_shapes_and_types_are_the_same_for_every_network"
 FINITE = "test_every_network_gives_finite_numbers"
 SAME = "test_the_same_network_gives_the_same_design"
-NAMES = "test_names_are_as_many_as_inputs_and_outputs"
-LEFT_ALONE = "test_the_design_that_is_given_is_left_alone"
+NAMES = "test_every_input_and_output_has_a_name"
+NOT_CHANGED = "test_the_given_design_is_not_changed"
 POINTS = np.arange(8.0).reshape(4, 2)
 
 
 @attrs.frozen
 class Stripe:
-    """A sound encoder of four colours on a given body, and the base of those that are not."""
+    """A valid encoder of four colors on a given body, and the base of the broken ones."""
 
     inputs: ClassVar[int] = 2
     outputs: ClassVar[int] = 1
     requires: ClassVar[Any] = ("body",)
-    provides: ClassVar[Any] = ("colour",)
+    provides: ClassVar[Any] = ("color",)
 
     def decode(self, network: Network, design: Design) -> Design:
-        return design.with_role("colour", self.colours(network))
+        return design.with_role("color", self.colors(network))
 
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         return np.clip(network(POINTS)[:, 0], -1, 1)
 
 
@@ -47,7 +47,7 @@ class TestStripe(OnABody):
 
 class Named(Stripe):
     input_names: ClassVar[Any] = ("u", "v")
-    output_names: ClassVar[Any] = ("colour",)
+    output_names: ClassVar[Any] = ("color",)
 
 
 class TestNamedStripe(OnABody):
@@ -79,11 +79,11 @@ class NoRole(Stripe):
 
 
 class ListOfRoles(Stripe):
-    provides = ["colour"]  # noqa: RUF012 - the fault under test
+    provides = ["color"]  # noqa: RUF012 - the fault under test
 
 
 class RequiredAndProvided(Stripe):
-    requires = ("body", "colour")
+    requires = ("body", "color")
 
 
 class OneRoleMore(Stripe):
@@ -98,34 +98,34 @@ class OneRoleLess(Stripe):
 
 class OnlyItsRole(Stripe):
     def decode(self, network: Network, design: Design) -> Design:
-        return Design({"colour": self.colours(network)})
+        return Design({"color": self.colors(network)})
 
 
 class ShapeByNetwork(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
-        colours = super().colours(network)
-        return colours[colours >= 0]
+    def colors(self, network: Network) -> NDArray[Any]:
+        colors = super().colors(network)
+        return colors[colors >= 0]
 
 
 class TypeByNetwork(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
-        colours = super().colours(network)
-        return colours if colours.any() else colours.astype(np.int64)
+    def colors(self, network: Network) -> NDArray[Any]:
+        colors = super().colors(network)
+        return colors if colors.any() else colors.astype(np.int64)
 
 
 class Unclamped(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         with np.errstate(over="ignore"):
-            colours: NDArray[Any] = np.exp(network(POINTS)[:, 0])
-            return colours
+            colors: NDArray[Any] = np.exp(network(POINTS)[:, 0])
+            return colors
 
 
 class Remembers(Stripe):
     calls: ClassVar[list[int]] = []
 
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         self.calls.append(1)
-        return super().colours(network) + len(self.calls)
+        return super().colors(network) + len(self.calls)
 
 
 class ChangesTheBody(Stripe):
@@ -134,22 +134,22 @@ class ChangesTheBody(Stripe):
 
 
 class SinglePrecision(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         return network(POINTS.astype(np.float32))[:, 0]
 
 
 class PointByPoint(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         return np.array([network(point) for point in POINTS])
 
 
 class ThreeInputs(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         return np.clip(network(np.ones((4, 3)))[:, 0], -1, 1)
 
 
 class InfinitePoints(Stripe):
-    def colours(self, network: Network) -> NDArray[Any]:
+    def colors(self, network: Network) -> NDArray[Any]:
         return np.clip(network(POINTS / np.zeros(1) if POINTS.all() else POINTS + np.inf)[:, 0], -1, 1)
 
 
@@ -180,7 +180,7 @@ class NoInputs(Stripe):
         (ThreeInputs(), FINITE),
         (InfinitePoints(), FINITE),
         (Remembers(), SAME),
-        (ChangesTheBody(), LEFT_ALONE),
+        (ChangesTheBody(), NOT_CHANGED),
     ],
     ids=name_of,
 )

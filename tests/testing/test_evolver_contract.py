@@ -19,15 +19,15 @@ KEEPS_SIZE = "test_the_population_keeps_its_size"
 UNIQUE = "test_ids_are_unique"
 ONE_GENOME = "test_an_id_stands_for_one_genome"
 GENOMES = "test_genomes_are_those_of_the_last_ask"
-MEMBERS = "test_members_have_the_fitness_that_was_told_in_order"
+MEMBERS = "test_members_have_the_fitness_of_tell_in_order"
 NUMBER = "test_a_wrong_number_of_values_is_refused"
 NOT_FINITE = "test_fitness_that_is_not_finite_is_refused"
 SAME_SEED = "test_the_same_seed_gives_the_same_evolution"
 OTHER_SEED = "test_another_seed_gives_another_evolution"
 RESTORED = "test_a_restored_run_continues_bit_for_bit"
-LOOKING = "test_looking_changes_nothing"
+READING = "test_reading_a_run_does_not_change_it"
 INTERLEAVED = "test_interleaved_runs_equal_each_alone"
-GLOBAL = "test_global_random_states_are_left_alone"
+GLOBAL = "test_global_random_states_are_not_changed"
 INDEPENDENT = "test_global_random_states_do_not_matter"
 OUTPUTS = "test_networks_give_finite_outputs"
 FUNCTIONS = "test_networks_are_functions"
@@ -40,7 +40,7 @@ Genome = dict[str, Any]
 
 
 class Climbing:
-    """A sound run, in which the better half has mutated children, and the base of those that are not."""
+    """A valid run, in which the better half has mutated children, and the base of the broken ones."""
 
     def __init__(self, inputs: int, outputs: int, size: int, rng: np.random.Generator) -> None:
         self.shape = (inputs, outputs)
@@ -106,7 +106,7 @@ class Climbing:
 
 @attrs.frozen
 class Climber:
-    """A sound evolver, and the base of those that are not."""
+    """A valid evolver, and the base of the broken ones."""
 
     run: ClassVar[type[Any]] = Climbing
 
@@ -142,7 +142,7 @@ class NumpysRandom(Climbing):
 
 
 class ReadsPythonsState(Climbing):
-    """Draws nothing, but depends on what others have drawn."""
+    """Does not draw from the global state, but depends on it."""
 
     def noise(self) -> NDArray[np.float64]:
         drawn: int = random.getstate()[1][1]
@@ -199,7 +199,7 @@ class GenomesByFitness(Climbing):
 
 
 class GenomesOnlyOnce(Climbing):
-    """Forgets over a restart which genomes it has asked about."""
+    """Does not restore the genomes of the last ``ask``."""
 
     asked: Sequence[Any] = ()
 
@@ -232,7 +232,7 @@ class AcceptsInfinity(Climbing):
 
 
 class RefusesAfterTheFact(Climbing):
-    """Draws a number before it looks, so that a refusal shows in the next generation."""
+    """Draws a number before it refuses, which changes the next generation."""
 
     def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
         if not np.isfinite(fitness).all():
@@ -264,7 +264,7 @@ class RoundsItsState(Climbing):
 
 
 class StateAdvances(Climbing):
-    """Like the pickling of a configuration of neat-python 2.0."""
+    """Advances a counter when saved, like a pickled configuration of neat-python 2.0."""
 
     def state(self) -> Any:
         self.next_id += 1
@@ -291,7 +291,7 @@ class SharedCounter(Climbing):
 
 
 class DisturbsTheOther(Climbing):
-    """Depends on which run was the last to start: each alone is the last."""
+    """Depends on whether it is the run that was started last, as a run alone always is."""
 
     last: ClassVar[list[Any]] = [None]
 
@@ -332,15 +332,15 @@ class Recurrent(Climbing):
         return lambda points: network(points + next(calls))
 
 
-class CentresPoints(Climbing):
+class CentersPoints(Climbing):
     def express(self, genome: Genome) -> Network:
         network = super().express(genome)
 
-        def centred(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        def centered(points: NDArray[np.float64]) -> NDArray[np.float64]:
             points -= points.mean() + 1
             return network(points)
 
-        return centred
+        return centered
 
 
 class DumpsTuples(Climbing):
@@ -395,17 +395,17 @@ class NoDump:
         (ForgetsItsCounter, RESTORED),
         (ForgetsFitness, RESTORED),
         (RoundsItsState, RESTORED),
-        (StateAdvances, LOOKING),
+        (StateAdvances, READING),
         (StateAdvances, RESTORED),
-        (ExpressDraws, LOOKING),
-        (DumpChanges, LOOKING),
+        (ExpressDraws, READING),
+        (DumpChanges, READING),
         (SharedCounter, INTERLEAVED),
         (DisturbsTheOther, INTERLEAVED),
         (Unbounded, OUTPUTS),
         (Flat, OUTPUTS),
         (SinglePrecision, OUTPUTS),
         (Recurrent, FUNCTIONS),
-        (CentresPoints, FUNCTIONS),
+        (CentersPoints, FUNCTIONS),
         (DumpsTuples, JSON),
     ],
 )
@@ -422,7 +422,7 @@ def test_a_broken_run_is_caught(run: type[Any], law: str, breaks: Callable[..., 
         (NoDump, "test_it_starts_a_run", TypeError),
     ],
 )
-def test_what_is_no_json_is_caught(
+def test_values_that_are_not_json_are_caught(
     run: type[Any], law: str, error: type[Exception], breaks: Callable[..., None]
 ) -> None:
     breaks(EvolverContract, starting(run, Climber), law, error=error)
@@ -434,21 +434,21 @@ class RefusesWithAnotherError(Climber):
             raise ValueError(size)
 
 
-class RefusesWithoutAWord(Climber):
+class RefusesWithoutAMessage(Climber):
     def check(self, size: int) -> None:
         if size < 2:
             raise ConfigurationError
 
 
-def test_refusals_that_are_none_are_caught(breaks: Callable[..., None]) -> None:
+def test_wrong_refusals_are_caught(breaks: Callable[..., None]) -> None:
     breaks(EvolverContract, RefusesWithAnotherError(), SIZES, error=ValueError)
-    breaks(EvolverContract, RefusesWithoutAWord(), SIZES)
+    breaks(EvolverContract, RefusesWithoutAMessage(), SIZES)
     breaks(EvolverContract, Climber(), SIZES, size=1)
 
 
 @attrs.frozen
 class Drawn(Climber):
-    """A sound evolver whose genomes can be drawn, and the base of those that are not."""
+    """A valid evolver that returns graphs, and the base of the broken ones."""
 
     def graph(self, genome: Any, inputs: int, outputs: int) -> Any:
         weights = self.weights(genome, (inputs, outputs))
@@ -458,7 +458,7 @@ class Drawn(Climber):
 
     def weights(self, genome: Any, shape: tuple[int, int]) -> list[list[float]]:
         if not isinstance(genome, dict):
-            raise ValueError("no genome")  # noqa: TRY004 - it is a bad document
+            raise ValueError("not a genome")  # noqa: TRY004 - an invalid document, not a wrong argument
         try:
             weights = np.array(genome.get("weights"), dtype=np.float64)
         except (TypeError, OverflowError) as error:
@@ -531,27 +531,27 @@ class InfiniteWeight(Redrawn):
         return attrs.evolve(graph, links=(NetworkLink(-1, 0, math.inf),))
 
 
-class DrawsOtherwiseNextTime(Redrawn):
+class DrawsDifferentlyEachTime(Redrawn):
     calls: ClassVar[Any] = itertools.count()
 
     def changed(self, graph: NetworkGraph) -> Any:
         return attrs.evolve(graph, links=(NetworkLink(-1, 0, float(next(self.calls))),))
 
 
-class NotesThatItDrew(Drawn):
+class ChangesTheGenome(Drawn):
     def graph(self, genome: Any, inputs: int, outputs: int) -> Any:
         graph = super().graph(genome, inputs, outputs)
         genome["drawn"] = True
         return graph
 
 
-class BelievesWhatItReads(Drawn):
+class ValidatesNothing(Drawn):
     def weights(self, genome: Any, shape: tuple[int, int]) -> list[list[float]]:
         found: list[list[float]] = genome["weights"]
         return found
 
 
-class BelievesNumbers(Drawn):
+class ValidatesOnlyNumbers(Drawn):
     def weights(self, genome: Any, shape: tuple[int, int]) -> list[list[float]]:
         try:
             return [[float(w) for w in row] for row in genome["weights"]]
@@ -572,14 +572,12 @@ class BelievesNumbers(Drawn):
         (LinksFromNowhere(), GRAPH, AssertionError),
         (LinksToAnInput(), GRAPH, AssertionError),
         (InfiniteWeight(), GRAPH, AssertionError),
-        (DrawsOtherwiseNextTime(), ONE_GRAPH, AssertionError),
-        (NotesThatItDrew(), ONE_GRAPH, AssertionError),
-        (BelievesWhatItReads(), DAMAGED, (TypeError, KeyError)),
-        (BelievesNumbers(), DAMAGED, AssertionError),
+        (DrawsDifferentlyEachTime(), ONE_GRAPH, AssertionError),
+        (ChangesTheGenome(), ONE_GRAPH, AssertionError),
+        (ValidatesNothing(), DAMAGED, (TypeError, KeyError)),
+        (ValidatesOnlyNumbers(), DAMAGED, AssertionError),
     ],
     ids=name_of,
 )
-def test_a_broken_drawing_is_caught(
-    component: Any, law: str, error: Any, breaks: Callable[..., None]
-) -> None:
+def test_a_broken_graph_is_caught(component: Any, law: str, error: Any, breaks: Callable[..., None]) -> None:
     breaks(EvolverContract, component, law, error=error)

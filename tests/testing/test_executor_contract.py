@@ -13,15 +13,15 @@ STARTS = "test_it_starts_workers"
 EVERY = "test_every_item_has_its_result"
 ORDER = "test_results_come_in_the_order_of_the_items"
 GENERATOR = "test_items_may_come_from_a_generator"
-ASKED = "test_items_are_asked_for_where_map_is_called"
-NO_ITEM = "test_an_exception_of_the_items_is_raised"
-RAISED = "test_an_exception_is_raised_where_map_is_called"
+THREAD = "test_items_are_requested_in_the_calling_thread"
+NO_ITEM = "test_an_exception_of_the_generator_is_raised"
+RAISED = "test_the_exception_of_the_first_failing_item_is_raised"
 SURVIVE = "test_workers_survive_an_exception"
 AGAIN = "test_workers_can_be_started_again"
 
 
 class Run:
-    """Sound workers, and the base of those that are not."""
+    """Valid workers, and the base of the broken ones."""
 
     workers = 2
 
@@ -37,7 +37,7 @@ class Run:
 
 @attrs.frozen
 class Pool:
-    """A sound executor, and the base of those that are not."""
+    """A valid executor, and the base of the broken ones."""
 
     run: ClassVar[type[Any]] = Run
 
@@ -74,17 +74,17 @@ class ReadsTwice(Run):
         return super().map(function, items)[:n]
 
 
-class AsksElsewhere(Run):
+class ReadsInAnotherThread(Run):
     def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
         return super().map(function, self.pool.submit(list, items).result())
 
 
 class StopsEarly(Run):
     def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
-        made: list[Any] = []
+        created: list[Any] = []
         with contextlib.suppress(KeyError):
-            made.extend(items)
-        return super().map(function, made)
+            created.extend(items)
+        return super().map(function, created)
 
 
 class Swallows(Run):
@@ -123,7 +123,7 @@ class Shared(Run):
         (AsCompleted, ORDER, AssertionError),
         (OnlyTwo, EVERY, AssertionError),
         (ReadsTwice, GENERATOR, AssertionError),
-        (AsksElsewhere, ASKED, AssertionError),
+        (ReadsInAnotherThread, THREAD, AssertionError),
         (StopsEarly, NO_ITEM, pytest.fail.Exception),
         (Swallows, RAISED, pytest.fail.Exception),
         (DiesOfAnException, SURVIVE, RuntimeError),

@@ -10,15 +10,15 @@ from contracts import name_of
 from evoframe import Outcome, Record
 from evoframe.testing import ObjectiveContract
 
-RECORD = "test_it_says_what_must_be_recorded"
+RECORD = "test_its_record_has_tracks"
 FINITE = "test_the_score_is_finite"
 SAME = "test_the_same_outcome_has_the_same_score"
-LEFT_ALONE = "test_the_outcome_is_left_alone"
+NOT_CHANGED = "test_the_outcome_is_not_changed"
 
 
 @attrs.frozen
 class Rise:
-    """A sound objective, and the base of those that are not."""
+    """A valid objective, and the base of the broken ones."""
 
     record: ClassVar[Record] = Record(("tip",))
 
@@ -37,7 +37,7 @@ class RiseAtTwoSamples(Rise):
 
 @attrs.frozen
 class RiseAfterASecond(Rise):
-    """Needs a simulation that lasts."""
+    """Requires a simulation of at least one second."""
 
     record: ClassVar[Record] = Record(("tip",), until=1.0)
 
@@ -63,7 +63,7 @@ class NothingRecorded(Rise):
 
 
 class Relative(Rise):
-    """Divides by zero where nothing moves."""
+    """Divides by zero if nothing moves."""
 
     def score(self, outcome: Outcome) -> Any:
         tip = outcome.tracks["tip"]
@@ -83,7 +83,7 @@ class Counts(Rise):
         return float(next(self.calls))
 
 
-class Centres(Rise):
+class Centers(Rise):
     def score(self, outcome: Outcome) -> Any:
         outcome.tracks["tip"][:] -= outcome.tracks["tip"].mean() + 1
         return super().score(outcome)
@@ -96,7 +96,7 @@ class Centres(Rise):
         (Relative(), FINITE),
         (Whole(), FINITE),
         (Counts(), SAME),
-        (Centres(), LEFT_ALONE),
+        (Centers(), NOT_CHANGED),
     ],
     ids=name_of,
 )

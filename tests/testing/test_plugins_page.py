@@ -1,4 +1,4 @@
-"""The examples of ``docs/plugins.md`` do what the page says."""
+"""The examples of ``docs/plugins.md`` work as the page describes."""
 
 import re
 import tomllib

@@ -15,13 +15,13 @@ from evoframe.testing import SimulatorContract
 ACCEPTED = "test_a_record_of_its_tracks_is_accepted"
 TRACK = "test_an_unknown_track_is_refused"
 END = "test_a_sample_after_the_end_is_refused"
-UNTIL = "test_an_end_before_the_time_to_be_reached_is_refused"
-ONLY_UNTIL = "test_the_time_to_be_reached_changes_nothing"
+UNTIL = "test_a_simulation_that_ends_before_record_until_is_refused"
+ONLY_UNTIL = "test_record_until_does_not_change_outcomes"
 EACH = "test_each_design_has_an_outcome"
 ARRAYS = "test_outcomes_have_the_promised_arrays"
-TIME = "test_time_goes_on"
+TIME = "test_time_increases"
 FINITE = "test_positions_are_finite_unless_the_simulation_diverged"
-DIVERGENCE = "test_divergence_is_said"
+DIVERGENCE = "test_divergence_is_reported"
 REPEATED = "test_a_simulation_can_be_repeated"
 BATCH = "test_a_batch_equals_its_members_one_by_one"
 THREADS = "test_any_number_of_threads_may_call_at_once"
@@ -36,9 +36,9 @@ SAME_VARIANTS = "test_the_same_design_has_the_same_variants"
 GEOMETRY = "test_a_geometry_has_frames_of_meshes"
 FIRST_FRAME = "test_one_frame_is_the_first_of_many"
 FORMATS = "test_each_format_gives_the_same_bytes_twice"
-DRAWN = "test_a_random_controller_is_that_of_the_generators_state"
-BODY = "test_a_random_controller_leaves_the_body"
-SHARED = "test_bodies_of_the_same_shape_are_given_the_same_random_controller"
+DRAWN = "test_a_random_controller_depends_on_the_generator"
+BODY = "test_a_random_controller_keeps_the_body"
+SHARED = "test_bodies_of_the_same_shape_get_the_same_random_controller"
 PUBLISHED = "test_published_bodies_can_be_simulated"
 
 STEPS, STEP = 12, 0.01
@@ -46,10 +46,10 @@ STEPS, STEP = 12, 0.01
 
 @attrs.frozen
 class Spring:
-    """A sound simulator of a weight on a spring, and the base of those that are not.
+    """A valid simulator of a weight on a spring, and the base of the broken ones.
 
-    The role ``spring`` is stiffness and damping; a third number is its colour, which does not matter. Without
-    stiffness there is nothing to simulate.
+    The role ``spring`` is stiffness and damping; a third number is its color, which does not matter. Without
+    stiffness, the simulation diverges at step 0.
     """
 
     requires: ClassVar[tuple[str, ...]] = ("spring",)
@@ -58,11 +58,11 @@ class Spring:
     def check(self, record: Record) -> None:
         for track in record.tracks:
             if track not in self.tracks:
-                raise ConfigurationError(f"there is no track '{track}'")
+                raise ConfigurationError(f"unknown track '{track}'")
         if record.samples and max(record.samples) >= len(self.sampled(record)):
-            raise ConfigurationError(f"there are only {len(self.sampled(record))} samples")
+            raise ConfigurationError(f"expected at most {len(self.sampled(record))} samples")
         if record.until > self.kept(record)[-1] * STEP:
-            raise ConfigurationError(f"{record.until} s are not reached")
+            raise ConfigurationError(f"the simulation ends before {record.until} s")
 
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
         return [self.one(design, record) for design in designs]
@@ -105,13 +105,13 @@ class Spring:
         return np.append(0, steps) if record.initial else steps
 
 
-def spring(stiffness: float, damping: float, colour: float = 0.0) -> Design:
-    return Design({"spring": np.array([stiffness, damping, colour])})
+def spring(stiffness: float, damping: float, color: float = 0.0) -> Design:
+    return Design({"spring": np.array([stiffness, damping, color])})
 
 
 class SpringContract(SimulatorContract):
     def designs(self) -> Sequence[Design]:
-        return [spring(1.0, 0.0), spring(1.0, 0.0, colour=1.0), spring(50.0, 0.5), spring(1.0, 0.1)]
+        return [spring(1.0, 0.0), spring(1.0, 0.0, color=1.0), spring(50.0, 0.5), spring(1.0, 0.1)]
 
     def diverging(self) -> Sequence[Design]:
         return [spring(1e6, -1.0), spring(0.0, 0.0)]
@@ -130,13 +130,13 @@ class TestSpringWithinASelection(SpringContract):
 
 @attrs.frozen
 class Offering(Spring):
-    """A sound simulator with files, variants and pictures, and the base of those that are not."""
+    """A valid simulator with formats, variants and geometries, and the base of the broken ones."""
 
     strength: float = 1.0
     formats: ClassVar[tuple[str, ...]] = ("txt",)
 
     def export(self, design: Design, format_: str) -> Any:
-        return Export(repr(design.roles["spring"].tolist()).encode(), ("colour",))
+        return Export(repr(design.roles["spring"].tolist()).encode(), ("color",))
 
     def variants(self, design: Design, record: Record) -> Sequence[Any]:
         return [
@@ -201,7 +201,7 @@ class VariantThatIsRefused(Offering):
 
 
 class Redrawn(Offering):
-    """Draws as `Offering` does, but for one thing."""
+    """Draws like `Offering`; subclasses change one detail."""
 
     def geometry(self, design: Design, frames: int) -> Geometry:
         return self.changed(super().geometry(design, frames))
@@ -234,7 +234,7 @@ class DrawsAnUnknownTrack(Redrawn):
         return attrs.evolve(geometry, tracks={"wheel": geometry.tracks["weight"]})
 
 
-class DrawsNamedColours(Redrawn):
+class DrawsNamedColors(Redrawn):
     def part(self, part: GeometryPart) -> GeometryPart:
         return attrs.evolve(part, colour="red")
 
@@ -259,7 +259,7 @@ class DrawsNowhere(Redrawn):
         return attrs.evolve(part, vertices=part.vertices * np.nan)
 
 
-class DrawsTheEndWhereOneIsAsked(Offering):
+class DrawsTheEndAsSingleFrame(Offering):
     def geometry(self, design: Design, frames: int) -> Geometry:
         geometry = super().geometry(design, frames)
         if frames > 1:
@@ -285,7 +285,7 @@ class ExportsTheCall(Offering):
         return Export(str(next(self.calls)).encode())
 
 
-class LeavesOutWithoutWords(Offering):
+class LeavesOutWithoutText(Offering):
     def export(self, design: Design, format_: str) -> Any:
         return Export(b"spring", ("",))
 
@@ -300,9 +300,9 @@ class WritesAPath(Offering):
 
 @attrs.frozen
 class Controlled(Spring):
-    """A sound simulator that draws controllers and brings bodies, and the base of those that are not.
+    """A valid simulator with random controllers and published bodies, and the base of the broken ones.
 
-    Another role, ``push``, is the controller; here it does nothing.
+    A second role, ``push``, is the controller; it has no effect on the simulation.
     """
 
     def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
@@ -348,8 +348,8 @@ class DrawsAnotherRole(Controlled):
         return design.with_role("wind", rng.uniform(-1.0, 1.0, 2))
 
 
-class DrawsWhatFits(Controlled):
-    """Draws more for stiffer springs."""
+class DrawsByStiffness(Controlled):
+    """Draws stronger controllers for stiffer springs."""
 
     def random_controller(self, design: Design, rng: np.random.Generator) -> Any:
         drawn = super().random_controller(design, rng)
@@ -378,12 +378,12 @@ class PublishesAnotherEachTime(Controlled):
         return [("soft", pushed(spring(float(next(self.calls)), 0.0)))]
 
 
-class IgnoresTheTimeToBeReached(Spring):
+class IgnoresUntil(Spring):
     def check(self, record: Record) -> None:
         super().check(attrs.evolve(record, until=0.0))
 
 
-class StopsWhenItIsReached(Spring):
+class StopsAtUntil(Spring):
     def kept(self, record: Record) -> NDArray[np.int64]:
         steps = super().kept(record)
         return steps[steps * STEP <= record.until] if record.until else steps
@@ -410,7 +410,7 @@ class NoEmptyBatch(Spring):
 
 
 class AddsOutcomes(Spring):
-    """Outcomes depend on the batch."""
+    """Returns outcomes that depend on the batch."""
 
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
         outcomes = super().simulate(designs, record)
@@ -524,8 +524,8 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
     [
         (AcceptsAnyTrack(), TRACK),
         (AcceptsAnyTrack(), END),
-        (IgnoresTheTimeToBeReached(), UNTIL),
-        (StopsWhenItIsReached(), ONLY_UNTIL),
+        (IgnoresUntil(), UNTIL),
+        (StopsAtUntil(), ONLY_UNTIL),
         (ForgetsTheLast(), EACH),
         (NoEmptyBatch(), EACH),
         (AddsOutcomes(), BATCH),
@@ -555,16 +555,16 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (DrawsAllTheTime(), GEOMETRY),
         (DrawsFromTheFirstStep(), GEOMETRY),
         (DrawsAnUnknownTrack(), GEOMETRY),
-        (DrawsNamedColours(), GEOMETRY),
+        (DrawsNamedColors(), GEOMETRY),
         (DrawsInvisibly(), GEOMETRY),
         (DrawsWithoutACorner(), GEOMETRY),
         (DrawsTriangles(), GEOMETRY),
         (DrawsNowhere(), GEOMETRY),
-        (DrawsTheEndWhereOneIsAsked(), FIRST_FRAME),
+        (DrawsTheEndAsSingleFrame(), FIRST_FRAME),
         (ExportsText(), FORMATS),
         (ExportsNothing(), FORMATS),
         (ExportsTheCall(), FORMATS),
-        (LeavesOutWithoutWords(), FORMATS),
+        (LeavesOutWithoutText(), FORMATS),
         (WritesTheChampionsName(), FORMATS),
         (WritesAPath(), FORMATS),
     ],
@@ -581,7 +581,7 @@ def test_a_broken_simulator_is_caught(component: Any, law: str, breaks: Callable
         (DrawsNothing(), DRAWN),
         (DrawsTheBodyToo(), BODY),
         (DrawsAnotherRole(), BODY),
-        (DrawsWhatFits(), SHARED),
+        (DrawsByStiffness(), SHARED),
         (PublishesOneNameTwice(), PUBLISHED),
         (PublishesWithoutAName(), PUBLISHED),
         (PublishesNoBody(), PUBLISHED),

@@ -14,7 +14,7 @@ REFUSALS = "test_populations_are_refused_by_a_configuration_error_that_names_the
 DECLARED = "test_no_more_collaborators_than_members_are_declared"
 COUNT = "test_as_many_as_declared_are_chosen"
 VALID = "test_indices_are_valid"
-ONCE = "test_nobody_is_chosen_twice"
+ONCE = "test_no_member_is_chosen_twice"
 SAME = "test_the_same_random_state_gives_the_same_choice"
 TIES = "test_ties_are_broken_by_index"
 CLEAN = "test_no_diverged_member_is_chosen_while_a_clean_one_is_left"
@@ -22,7 +22,7 @@ CLEAN = "test_no_diverged_member_is_chosen_while_a_clean_one_is_left"
 
 @attrs.frozen
 class Two:
-    """A sound strategy, the two fittest, and the base of those that are not."""
+    """A valid strategy, which chooses the two fittest, and the base of the broken ones."""
 
     def size(self, n_members: int) -> int:
         if n_members < 2:

@@ -1,4 +1,4 @@
-"""Contract tests that authors of plugins subclass: the laws of :mod:`evoframe.contract`, one test each.
+"""Contract tests that plugin authors subclass: one test for each law of :mod:`evoframe.contract`.
 
 .. code-block:: python
 
@@ -8,7 +8,7 @@
     class TestMedian(AggregatorContract):
         component = Median()
 
-They need ``pip install 'evoframe[testing]'``.
+They require pytest and hypothesis: ``pip install '.[testing]'`` in a checkout of evoframe.
 """
 
 try:
@@ -16,10 +16,11 @@ try:
     import pytest
 except ImportError as error:
     raise ImportError(
-        "evoframe.testing needs pytest and hypothesis; install them with: pip install 'evoframe[testing]'"
+        "evoframe.testing requires pytest and hypothesis; "
+        "in a checkout of evoframe, install them with: pip install '.[testing]'"
     ) from error
 
-# A failing law then shows the values that it compared, as a test of the plugin's own would.
+# Makes a failing law show the compared values, like an assertion in the plugin's own tests.
 pytest.register_assert_rewrite(
     *(
         f"evoframe.testing.{module}"

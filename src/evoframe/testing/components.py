@@ -1,4 +1,4 @@
-"""What is true of every component."""
+"""The laws of all components."""
 
 from __future__ import annotations
 
@@ -19,43 +19,50 @@ class ComponentContract(Generic[C]):
 
     Attributes:
         component: The component under test.
-        protocol: The protocol that it fulfils.
+        protocol: The protocol that it implements.
     """
 
     component: C
     protocol: ClassVar[type[Any]] = object
 
-    def test_it_fulfils_its_protocol(self) -> None:
-        """Every method and property of the protocol is there."""
-        assert isinstance(self.component, self.protocol)
+    def test_it_implements_its_protocol(self) -> None:
+        """A component has every method and property of its protocol."""
+        assert isinstance(self.component, self.protocol), (
+            f"{type(self.component).__name__} lacks a method or property of {self.protocol.__name__}"
+        )
 
     def test_it_is_a_frozen_attrs_class(self) -> None:
-        """Its options cannot change while a run goes on."""
-        assert attrs.has(type(self.component)), "decorate the class with @attrs.frozen"
+        """Options cannot change during a run."""
+        name = type(self.component).__name__
+        assert attrs.has(type(self.component)), (
+            f"{name} is not an attrs class: decorate it with @attrs.frozen"
+        )
         names = [field.name for field in _options(self.component)]
         for name in [*names, "some_attribute"]:
             with pytest.raises(attrs.exceptions.FrozenInstanceError):
                 setattr(self.component, name, None)
 
     def test_options_have_a_type_and_a_default_or_an_explanation(self) -> None:
-        """Nobody has to read the code to write a configuration."""
+        """Users can write a configuration without reading the code."""
         text = type(self.component).__doc__ or ""
         for field in _options(self.component):
-            assert field.type is not None, f"the option '{field.name}' has no type"
+            assert field.type is not None, f"the option '{field.name}' has no type annotation"
             explained = f"{field.name}:" in text
             assert explained or field.default is not attrs.NOTHING, (
                 f"the option '{field.name}' has no default: explain it in the docstring, under Attributes"
             )
 
-    def test_defaults_make_a_component(self) -> None:
-        """Where every option has a default, the name alone is a configuration."""
+    def test_defaults_are_valid(self) -> None:
+        """If every option has a default, a component can be created without options."""
         if all(field.default is not attrs.NOTHING for field in _options(self.component)):
             type(self.component)()  # type: ignore[call-arg, unused-ignore]
 
     def test_options_survive_a_configuration_file(self) -> None:
-        """What a run writes down of its configuration is the same component when it is read."""
+        """A component read from the configuration that a run has written equals the original."""
         options = unstructure(self.component)
-        assert structure(options, type(self.component), ("component",)) == self.component
+        assert structure(options, type(self.component), ("component",)) == self.component, (
+            f"a component created from the written options {options} differs from the original"
+        )
 
 
 def _options(component: Any) -> list[attrs.Attribute[Any]]:

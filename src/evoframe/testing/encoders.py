@@ -15,8 +15,8 @@ __all__ = ["EncoderContract"]
 class EncoderContract(ComponentContract[Encoder]):
     """The laws of an :class:`~evoframe.Encoder`.
 
-    An encoder that requires roles overrides :meth:`design`. Names of inputs and outputs are tested where they
-    are offered.
+    If the encoder requires roles, override :meth:`design`. Names of inputs and outputs are tested if the
+    encoder has them.
     """
 
     protocol = Encoder
@@ -26,7 +26,7 @@ class EncoderContract(ComponentContract[Encoder]):
         return Design()
 
     def networks(self) -> st.SearchStrategy[Network]:
-        """Return networks of the encoder's inputs and outputs, from silent ones to enormous ones."""
+        """Return networks with the encoder's inputs and outputs, with outputs from 0 to about 1e50."""
         return st.builds(
             random_network,
             inputs=st.just(self.component.inputs),
@@ -36,82 +36,98 @@ class EncoderContract(ComponentContract[Encoder]):
         )
 
     def test_roles_are_declared(self) -> None:
-        """Names in tuples; what is provided was not there before."""
+        """``requires`` and ``provides`` are disjoint tuples of names, and at least one role is provided."""
         requires, provides = self.component.requires, self.component.provides
-        assert isinstance(requires, tuple)
-        assert isinstance(provides, tuple)
-        assert provides, "an encoder provides at least one role"
-        assert not set(requires) & set(provides)
-        assert all(isinstance(role, str) for role in (*requires, *provides))
+        assert isinstance(requires, tuple), f"requires must be a tuple, found {type(requires).__name__}"
+        assert isinstance(provides, tuple), f"provides must be a tuple, found {type(provides).__name__}"
+        assert provides, "an encoder must provide at least one role"
+        both = sorted(set(requires) & set(provides))
+        assert not both, f"an encoder must not both require and provide a role, found {both}"
+        assert all(isinstance(role, str) for role in (*requires, *provides)), "roles must be strings"
 
     def test_a_network_has_inputs_and_outputs(self) -> None:
-        """At least one of each."""
-        assert self.component.inputs >= 1
-        assert self.component.outputs >= 1
+        """A network has at least one input and one output."""
+        assert self.component.inputs >= 1, f"expected at least 1 input, found {self.component.inputs}"
+        assert self.component.outputs >= 1, f"expected at least 1 output, found {self.component.outputs}"
 
-    def test_names_are_as_many_as_inputs_and_outputs(self) -> None:
-        """A tuple of different words for each, so that a figure can tell them apart."""
+    def test_every_input_and_output_has_a_name(self) -> None:
+        """Names are tuples of different strings, so that figures can distinguish inputs and outputs."""
         offered: list[tuple[str, tuple[str, ...], int]] = []
         if isinstance(self.component, SupportsInputNames):
             offered.append(("input_names", self.component.input_names, self.component.inputs))
         if isinstance(self.component, SupportsOutputNames):
             offered.append(("output_names", self.component.output_names, self.component.outputs))
         for key, names, number in offered:
-            assert isinstance(names, tuple), f"{key} is no tuple"
-            assert len(names) == number
-            assert all(isinstance(name, str) and name.strip() for name in names)
-            assert len(set(names)) == len(names), f"{key} has the same name twice"
+            assert isinstance(names, tuple), f"{key} must be a tuple, found {type(names).__name__}"
+            assert len(names) == number, f"{key} must have {number} names, found {len(names)}"
+            assert all(isinstance(name, str) and name.strip() for name in names), (
+                f"{key} must be strings that are not empty, found {names}"
+            )
+            assert len(set(names)) == len(names), f"{key} must be different names, found {names}"
 
     def test_the_example_has_the_required_roles(self) -> None:
-        """Otherwise the other tests say nothing: override ``design()``."""
-        assert set(self.component.requires) <= set(self.design().roles)
+        """The example of ``design()`` has all required roles; the other tests depend on it."""
+        missing = sorted(set(self.component.requires) - set(self.design().roles))
+        assert not missing, f"override design() to return a design with the required roles {missing}"
 
     def test_every_network_gives_the_declared_roles(self) -> None:
-        """Those provided are added to the design, no others."""
+        """``decode`` adds exactly the provided roles to the design."""
 
         def law(network: Network) -> None:
             design = self.design()
             decoded = self.component.decode(network, design)
-            assert set(decoded.roles) == {*design.roles, *self.component.provides}
+            expected = {*design.roles, *self.component.provides}
+            assert set(decoded.roles) == expected, (
+                f"decode() must return the roles {sorted(expected)}, found {sorted(decoded.roles)}"
+            )
 
         for_all(law, network=self.networks())
 
     def test_shapes_and_types_are_the_same_for_every_network(self) -> None:
-        """A batch of designs is one array."""
+        """The shape and type of a role do not depend on the network, so that designs can be batched."""
         reference = self._provided(random_network(self.component.inputs, self.component.outputs, 0, 1.0))
 
         def law(network: Network) -> None:
             for role, array in self._provided(network).items():
-                assert array.shape == reference[role].shape
-                assert array.dtype == reference[role].dtype
+                shape, dtype = reference[role].shape, reference[role].dtype
+                assert array.shape == shape, f"role '{role}': expected shape {shape}, found {array.shape}"
+                assert array.dtype == dtype, f"role '{role}': expected {dtype}, found {array.dtype}"
 
         for_all(law, network=self.networks())
 
     def test_every_network_gives_finite_numbers(self) -> None:
-        """Whatever a network answers, there is a design to simulate."""
+        """Every network gives a design that can be simulated, even with enormous outputs."""
 
         def law(network: Network) -> None:
             for role, array in self._provided(network).items():
-                assert np.isfinite(array).all(), f"the role '{role}' is not finite"
+                assert np.isfinite(array).all(), (
+                    f"role '{role}': expected finite values for any network; clamp its outputs"
+                )
 
         for_all(law, network=self.networks())
 
     def test_the_same_network_gives_the_same_design(self) -> None:
-        """To the last bit."""
+        """Decoding a network twice gives the same design, to the last bit."""
 
         def law(network: Network) -> None:
-            assert same_arrays(self._provided(network), self._provided(network))
+            first, second = self._provided(network), self._provided(network)
+            assert same_arrays(first, second), "decode() gives different designs for the same network"
 
         for_all(law, network=self.networks())
 
-    def test_the_design_that_is_given_is_left_alone(self) -> None:
-        """Its roles are part of the result, unchanged."""
+    def test_the_given_design_is_not_changed(self) -> None:
+        """The roles of the given design are unchanged, also in the result."""
 
         def law(network: Network) -> None:
             given = self.design()
             decoded = self.component.decode(network, given)
-            assert same_arrays(given.roles, self.design().roles)
-            assert same_arrays({role: decoded.roles[role] for role in given.roles}, given.roles)
+            assert same_arrays(given.roles, self.design().roles), (
+                "decode() changes the design that it is given"
+            )
+            kept = {role: decoded.roles[role] for role in given.roles}
+            assert same_arrays(kept, given.roles), (
+                "decode() must keep the roles of the given design unchanged"
+            )
 
         for_all(law, network=self.networks())
 

@@ -27,14 +27,14 @@ Floats = NDArray[np.float64]
 class EvolverContract(ComponentContract[Evolver]):
     """The laws of an :class:`~evoframe.Evolver` and of the run that it starts.
 
-    The graph of a genome is tested where it is offered.
+    Graphs of genomes are tested if the evolver returns them.
 
     Attributes:
-        inputs: Inputs of its networks.
-        outputs: Outputs of its networks.
+        inputs: Number of inputs of its networks.
+        outputs: Number of outputs of its networks.
         size: Size of the population.
-        turns: How long to evolve it.
-        measures: Names of the measures that it needs beside fitness.
+        turns: Number of turns of the tests.
+        measures: Names of the measures that it requires in addition to fitness.
     """
 
     protocol = Evolver
@@ -45,162 +45,198 @@ class EvolverContract(ComponentContract[Evolver]):
     measures: ClassVar[tuple[str, ...]] = ()
 
     def test_sizes_are_refused_by_a_configuration_error(self) -> None:
-        """``check`` raises nothing else, says why, and accepts the size under test."""
-        assert "" not in [refusal(self.component.check, size) for size in range(1, 41)]
-        assert refusal(self.component.check, self.size) is None
+        """``check`` refuses by a ``ConfigurationError`` with a message only, and accepts the tested size."""
+        for size in range(1, 41):
+            assert refusal(self.component.check, size) != "", (
+                f"check({size}) raises an error without a message"
+            )
+        refused = refusal(self.component.check, self.size)
+        assert refused is None, f"check() must accept the tested size {self.size}, or override 'size'"
 
     def test_it_starts_a_run(self) -> None:
-        """With every method of the protocol."""
-        assert isinstance(self.start(), EvolverRun)
+        """``start`` returns an ``EvolverRun`` with every method of the protocol."""
+        assert isinstance(self.start(), EvolverRun), "start() must return an EvolverRun; a method is missing"
 
     def test_the_population_keeps_its_size(self) -> None:
-        """``ask`` gives as many genomes as were asked for, each turn."""
+        """``ask`` returns as many genomes as the population has members, in every turn."""
         for _, genomes in self._play(self.start()):
-            assert len(genomes) == self.size
+            assert len(genomes) == self.size, f"ask() must return {self.size} genomes, found {len(genomes)}"
 
     def test_ids_are_unique(self) -> None:
-        """Within a population; the members are as many as the genomes."""
+        """Members of a population have different ids, one member for each genome."""
         for run, _ in self._play(self.start()):
             ids = [member.id for member in run.members()]
-            assert len(set(ids)) == len(ids) == self.size
+            assert len(set(ids)) == len(ids) == self.size, (
+                f"members() must return {self.size} members with different ids, found the ids {ids}"
+            )
 
     def test_an_id_stands_for_one_genome(self) -> None:
-        """For the whole run."""
+        """An id belongs to the same genome during the whole run."""
         known: dict[int, str] = {}
         for run, genomes in self._play(self.start()):
             for member, genome in zip(run.members(), genomes, strict=True):
                 dumped = _text(run.dump(genome))
-                assert known.setdefault(member.id, dumped) == dumped
+                assert known.setdefault(member.id, dumped) == dumped, (
+                    f"the id {member.id} belongs to two different genomes"
+                )
 
     def test_genomes_are_those_of_the_last_ask(self) -> None:
-        """Before and after they are told about."""
+        """``genomes`` returns the genomes of the last ``ask``, before and after ``tell``."""
         run = self.start()
         for _ in range(self.turns):
             asked = _dumped(run, run.ask())
-            assert _dumped(run, run.genomes()) == asked
+            assert _dumped(run, run.genomes()) == asked, "genomes() must equal the last ask()"
             self._tell(run, run.genomes())
-            assert _dumped(run, run.genomes()) == asked
+            assert _dumped(run, run.genomes()) == asked, (
+                "genomes() must equal the last ask(), also after tell()"
+            )
 
-    def test_members_have_the_fitness_that_was_told_in_order(self) -> None:
-        """Before it is told, the initial members have none."""
+    def test_members_have_the_fitness_of_tell_in_order(self) -> None:
+        """Members have the fitness passed to ``tell``, in order; initial members have none before."""
         run = self.start()
         for turn in range(self.turns):
             genomes = run.ask()
             if turn == 0:
-                assert [member.fitness for member in run.members()] == [None] * self.size
+                initial = [member.fitness for member in run.members()]
+                assert initial == [None] * self.size, (
+                    "initial members must have the fitness None before tell()"
+                )
             fitness, measures = self.judge(run, genomes)
             run.tell(fitness, measures)
-            assert [member.fitness for member in run.members()] == fitness.tolist()
+            assert [member.fitness for member in run.members()] == fitness.tolist(), (
+                "members() must return the fitness passed to tell(), in the order of ask()"
+            )
 
     def test_a_wrong_number_of_values_is_refused(self) -> None:
-        """And leaves the run as it was."""
+        """``tell`` refuses a wrong number of fitness values, and the run is unchanged."""
         self._refuses(lambda fitness: fitness[:-1])
         self._refuses(lambda fitness: np.append(fitness, 0.0))
 
     def test_fitness_that_is_not_finite_is_refused(self) -> None:
-        """And leaves the run as it was."""
+        """``tell`` refuses infinite and NaN fitness, and the run is unchanged."""
         for value in (math.nan, math.inf, -math.inf):
             self._refuses(functools.partial(_with_last, value))
 
     def test_the_same_seed_gives_the_same_evolution(self) -> None:
-        """To the last bit."""
-        assert self._history(self.start()) == self._history(self.start())
+        """Runs with the same seed are equal, to the last bit."""
+        assert self._history(self.start()) == self._history(self.start()), (
+            "two runs with the same seed differ; draw from the generator passed to start() only"
+        )
 
     def test_another_seed_gives_another_evolution(self) -> None:
-        """The generator that is handed over is used."""
-        assert self._history(self.start(seed=1)) != self._history(self.start(seed=2))
+        """Runs with different seeds differ."""
+        assert self._history(self.start(seed=1)) != self._history(self.start(seed=2)), (
+            "two runs with different seeds are equal; draw from the generator passed to start()"
+        )
 
     def test_a_restored_run_continues_bit_for_bit(self) -> None:
-        """After every turn, through JSON text, in a run that was started with another seed."""
+        """A run restored from JSON text after any turn continues as the original, whatever its seed."""
         expected = self._history(self.start())
         run = self.start()
         for turn in range(self.turns):
             self._turn(run)
             restored = self.start(seed=turn + 100)
             restored.restore(json.loads(_text(run.state())))
-            assert list(restored.members()) == list(run.members())
-            assert _dumped(restored, restored.genomes()) == _dumped(run, run.genomes())
-            assert _text(restored.state()) == _text(run.state())
-            assert self._history(restored, self.turns - turn - 1) == expected[turn + 1 :]
+            assert list(restored.members()) == list(run.members()), "restore() must restore the members"
+            assert _dumped(restored, restored.genomes()) == _dumped(run, run.genomes()), (
+                "restore() must restore the genomes of the last ask()"
+            )
+            assert _text(restored.state()) == _text(run.state()), "state() must equal the restored state"
+            assert self._history(restored, self.turns - turn - 1) == expected[turn + 1 :], (
+                f"the run restored after turn {turn} continues differently; is the random state restored?"
+            )
 
-    def test_looking_changes_nothing(self) -> None:
-        """``state``, ``members``, ``genomes``, ``express`` and ``dump`` may be called at any time."""
-        run, looked_at = self.start(), []
+    def test_reading_a_run_does_not_change_it(self) -> None:
+        """``state``, ``members``, ``genomes``, ``express`` and ``dump`` can be called at any time."""
+        run, read = self.start(), []
         for _ in range(self.turns):
             genomes = run.ask()
-            self._look(run, genomes)
-            looked_at.append(self._tell(run, genomes))
-            self._look(run, genomes)
-        assert looked_at == self._history(self.start())
+            self._read(run, genomes)
+            read.append(self._tell(run, genomes))
+            self._read(run, genomes)
+        assert read == self._history(self.start()), (
+            "calling state(), members(), genomes(), express() or dump() changes the run"
+        )
 
     def test_interleaved_runs_equal_each_alone(self) -> None:
-        """Two populations of one process share nothing."""
+        """Two populations in one process do not affect each other."""
         one, other = self.start(seed=1), self.start(seed=2)
         histories = [(self._turn(one), self._turn(other)) for _ in range(self.turns)]
-        assert [turn for turn, _ in histories] == self._history(self.start(seed=1))
-        assert [turn for _, turn in histories] == self._history(self.start(seed=2))
+        shared = "two runs in one process affect each other; keep all state in the run"
+        assert [turn for turn, _ in histories] == self._history(self.start(seed=1)), shared
+        assert [turn for _, turn in histories] == self._history(self.start(seed=2)), shared
 
-    def test_global_random_states_are_left_alone(self) -> None:
-        """Nothing is drawn from Python's or numpy's shared generators, not even by ``restore``."""
+    def test_global_random_states_are_not_changed(self) -> None:
+        """A run does not draw from the global generators of Python and numpy, not even in ``restore``."""
         with global_random_state_untouched():
             run = self.start()
             self._history(run)
             self.start().restore(json.loads(_text(run.state())))
 
     def test_global_random_states_do_not_matter(self) -> None:
-        """Whatever other code has drawn."""
+        """A run does not depend on the global generators of Python and numpy."""
         with _globally_seeded(1):
             first = self._history(self.start())
         with _globally_seeded(2):
             second = self._history(self.start())
-        assert first == second
+        assert first == second, (
+            "the run depends on global random state; draw from the generator passed to start() only"
+        )
 
     def test_networks_give_finite_outputs(self) -> None:
-        """``float64[n, outputs]`` for every ``float64[n, inputs]``."""
+        """Networks return finite ``float64[n, outputs]`` for every ``float64[n, inputs]``."""
         networks = [run.express(genome) for run, genomes in self._play(self.start()) for genome in genomes]
 
         def law(seed: int, scale: float, data: st.DataObject) -> None:
             network = networks[data.draw(st.integers(0, len(networks) - 1), label="network")]
             outputs = network(self._points(seed, scale))
-            assert outputs.dtype == np.float64
-            assert outputs.shape == (16, self.outputs)
-            assert np.isfinite(outputs).all()
+            assert outputs.dtype == np.float64, f"a network must return float64, found {outputs.dtype}"
+            assert outputs.shape == (16, self.outputs), (
+                f"a network must return shape (16, {self.outputs}) for 16 points, found {outputs.shape}"
+            )
+            assert np.isfinite(outputs).all(), "a network must return finite outputs for finite points"
 
         scales = st.sampled_from([0.0, 1.0, 20.0, 1e6, 1e50])
         for_all(law, seed=st.integers(0, 2**32 - 1), scale=scales, data=st.data())
 
     def test_networks_are_functions(self) -> None:
-        """The same points give the same outputs, and are left alone; a genome gives the same network."""
+        """A network returns the same outputs for the same points, and does not change them."""
         for run, genomes in self._play(self.start()):
             points = self._points(0, 20.0)
             outputs = [network(points) for network in (run.express(genomes[-1]),) * 2]
-            assert same_bits(points, self._points(0, 20.0))
-            assert same_bits(outputs[0], outputs[1])
-            assert same_bits(outputs[0], run.express(genomes[-1])(points))
+            assert same_bits(points, self._points(0, 20.0)), "a network must not change its points"
+            assert same_bits(outputs[0], outputs[1]), (
+                "a network returns different outputs for the same points"
+            )
+            assert same_bits(outputs[0], run.express(genomes[-1])(points)), (
+                "express() returns different networks for the same genome"
+            )
 
     def test_a_dumped_genome_is_json(self) -> None:
-        """It is equal after a round trip through text."""
+        """A dumped genome is equal after a round trip through JSON text."""
         for run, genomes in self._play(self.start()):
             for genome in genomes:
                 dumped = run.dump(genome)
-                assert json.loads(_text(dumped)) == dumped
+                assert json.loads(_text(dumped)) == dumped, (
+                    "dump() must return values that survive a round trip through JSON: lists, not tuples"
+                )
 
     def test_a_graph_has_the_networks_inputs_and_outputs(self) -> None:
-        """Each node but the inputs has a label, and links join nodes; also after generations."""
+        """All nodes except the inputs have labels, and links connect nodes, in every generation."""
         for dumped in self._drawable():
             self._assert_sound(self._graph(dumped))
 
     def test_a_genome_has_one_graph(self) -> None:
-        """The same again, and from JSON text; the genome is left alone."""
+        """A genome has the same graph every time, also after JSON text, and is not changed."""
         for dumped in self._drawable():
             before = _text(dumped)
             graph = self._graph(dumped)
-            assert self._graph(dumped) == graph
-            assert self._graph(json.loads(before)) == graph
-            assert _text(dumped) == before
+            assert self._graph(dumped) == graph, "graph() returns different graphs for the same genome"
+            assert self._graph(json.loads(before)) == graph, "graph() differs after a round trip through JSON"
+            assert _text(dumped) == before, "graph() must not change the genome"
 
     def test_a_damaged_genome_is_refused_by_a_value_error(self) -> None:
-        """Or it is still one: nothing else is raised, and no graph is unsound."""
+        """A damaged genome gives a ``ValueError`` or a valid graph."""
         texts = [_text(dumped) for dumped in self._drawable()][:: self.size]
 
         def law(text: str, junk: Any, data: st.DataObject) -> None:
@@ -213,20 +249,20 @@ class EvolverContract(ComponentContract[Evolver]):
             for_all(law, text=st.sampled_from(texts), junk=_JUNK, data=st.data())
 
     def start(self, seed: int = 0) -> EvolverRun:
-        """Start a run with its own random stream."""
+        """Start a run with a new generator."""
         rng = np.random.default_rng(seed)
         return self.component.start(self.inputs, self.outputs, self.size, rng)
 
     def judge(self, run: EvolverRun, genomes: Sequence[Any]) -> tuple[Floats, Mapping[str, Floats]]:
-        """Return fitness and measures of *genomes*, which depend on what their networks answer."""
+        """Return the fitness and measures of *genomes*, computed from the outputs of their networks."""
         points = self._points(0, 1.0)
-        answers = [np.arctan(run.express(genome)(points)) for genome in genomes]
-        fitness = np.array([answer.mean() for answer in answers])
-        spread = np.array([answer.std() for answer in answers])
+        outputs = [np.arctan(run.express(genome)(points)) for genome in genomes]
+        fitness = np.array([output.mean() for output in outputs])
+        spread = np.array([output.std() for output in outputs])
         return fitness, dict.fromkeys(self.measures, spread)
 
     def _drawable(self) -> Iterator[Any]:
-        """Return the dumped genomes of several generations if the evolver offers their graphs."""
+        """Return dumped genomes of several generations if the evolver returns graphs, else nothing."""
         if isinstance(self.component, SupportsGraph):
             for run, genomes in self._play(self.start()):
                 yield from map(run.dump, genomes)
@@ -234,27 +270,40 @@ class EvolverContract(ComponentContract[Evolver]):
     def _graph(self, dumped: Any) -> NetworkGraph:
         assert isinstance(self.component, SupportsGraph)
         graph = self.component.graph(dumped, self.inputs, self.outputs)
-        assert isinstance(graph, NetworkGraph)
+        assert isinstance(graph, NetworkGraph), (
+            f"graph() must return a NetworkGraph, found {type(graph).__name__}"
+        )
         return graph
 
     def _assert_sound(self, graph: NetworkGraph) -> None:
-        assert len(graph.inputs) == self.inputs
-        assert len(graph.outputs) == self.outputs
+        n_inputs, n_outputs = len(graph.inputs), len(graph.outputs)
+        assert n_inputs == self.inputs, f"a graph must have {self.inputs} inputs, found {n_inputs}"
+        assert n_outputs == self.outputs, f"a graph must have {self.outputs} outputs, found {n_outputs}"
         ends = [*graph.inputs, *graph.outputs]
-        assert len(set(ends)) == len(ends), "inputs and outputs have ids of their own"
-        assert not set(graph.inputs) & set(graph.labels), "inputs are named by the encoder"
-        assert set(graph.outputs) <= set(graph.labels)
-        assert all(isinstance(label, str) and label.strip() for label in graph.labels.values())
+        assert len(set(ends)) == len(ends), f"inputs and outputs must have different ids, found {ends}"
+        labeled = sorted(set(graph.inputs) & set(graph.labels))
+        assert not labeled, (
+            f"inputs must not have labels (the encoder names them), found labels for {labeled}"
+        )
+        unlabeled = sorted(set(graph.outputs) - set(graph.labels))
+        assert not unlabeled, f"outputs must have labels, found none for {unlabeled}"
+        assert all(isinstance(label, str) and label.strip() for label in graph.labels.values()), (
+            f"labels must be strings that are not empty, found {dict(graph.labels)}"
+        )
         for link in graph.links:
-            assert link.start in graph.labels or link.start in graph.inputs
-            assert link.end in graph.labels
-            assert math.isfinite(link.weight)
+            assert link.start in graph.labels or link.start in graph.inputs, (
+                f"links must start at a node of the graph, found {link.start}"
+            )
+            assert link.end in graph.labels, (
+                f"links must end at a node that is not an input, found {link.end}"
+            )
+            assert math.isfinite(link.weight), f"links must have finite weights, found {link.weight}"
 
     def _points(self, seed: int, scale: float) -> Floats:
         return scale * np.random.default_rng(seed).uniform(-1, 1, size=(16, self.inputs))
 
     def _play(self, run: EvolverRun) -> Iterator[tuple[EvolverRun, Sequence[Any]]]:
-        """Evolve, and yield between :meth:`ask` and :meth:`tell`."""
+        """Evolve for all turns; yield the run and its genomes between ``ask`` and ``tell``."""
         for _ in range(self.turns):
             genomes = run.ask()
             yield run, genomes
@@ -264,7 +313,7 @@ class EvolverContract(ComponentContract[Evolver]):
         return self._tell(run, run.ask())
 
     def _tell(self, run: EvolverRun, genomes: Sequence[Any]) -> str:
-        """Tell the fitness and return everything that can be seen of the turn."""
+        """Pass the fitness to ``tell``, and return the genomes, members and fitness of the turn as text."""
         fitness, measures = self.judge(run, genomes)
         run.tell(fitness, measures)
         members = [str(member) for member in run.members()]
@@ -273,7 +322,7 @@ class EvolverContract(ComponentContract[Evolver]):
     def _history(self, run: EvolverRun, turns: int | None = None) -> list[str]:
         return [self._turn(run) for _ in range(self.turns if turns is None else turns)]
 
-    def _look(self, run: EvolverRun, genomes: Sequence[Any]) -> None:
+    def _read(self, run: EvolverRun, genomes: Sequence[Any]) -> None:
         run.state()
         run.members()
         run.genomes()
@@ -289,7 +338,7 @@ class EvolverContract(ComponentContract[Evolver]):
         with pytest.raises(ValueError, match=r"."):
             run.tell(spoiled, measures)
         history = [self._tell(run, genomes), *self._history(run, self.turns - 1)]
-        assert history == self._history(self.start())
+        assert history == self._history(self.start()), "a refused tell() must not change the run"
 
 
 _MISSING: Any = object()
@@ -301,7 +350,7 @@ _JUNK: st.SearchStrategy[Any] = st.one_of(
 
 
 def _places(value: Any) -> Iterator[tuple[Any, ...]]:
-    """Return the keys that lead to each of the JSON values within *value*, which is the first."""
+    """Return the paths of *value* itself and of all JSON values within it."""
     yield ()
     if isinstance(value, dict | list):
         for key in value if isinstance(value, dict) else range(len(value)):
@@ -309,7 +358,7 @@ def _places(value: Any) -> Iterator[tuple[Any, ...]]:
 
 
 def _damaged(value: Any, place: tuple[Any, ...], junk: Any) -> Any:
-    """Return *value* with *junk* at a place, or without it if that is :data:`_MISSING`."""
+    """Return *value* with *junk* at *place*, or without that place if *junk* is :data:`_MISSING`."""
     if not place:
         return None if junk is _MISSING else junk
     parent = functools.reduce(lambda within, key: within[key], place[:-1], value)
@@ -329,13 +378,13 @@ def _dumped(run: EvolverRun, genomes: Sequence[Any]) -> list[str]:
 
 
 def _text(value: Any) -> str:
-    """Return JSON text that shows everything, the order of dictionaries too."""
+    """Return *value* as JSON text, which preserves the order of dictionaries."""
     return json.dumps(value, allow_nan=False)
 
 
 @contextlib.contextmanager
 def _globally_seeded(seed: int) -> Iterator[None]:
-    states = random.getstate(), np.random.get_state()  # noqa: NPY002 - others may use it
+    states = random.getstate(), np.random.get_state()  # noqa: NPY002 - restored below for other tests
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002
     try:

@@ -18,71 +18,79 @@ __all__ = ["ExecutorContract"]
 class ExecutorContract(ComponentContract[Executor]):
     """The laws of an :class:`~evoframe.Executor` and of the workers that it starts.
 
-    The functions that are mapped stand in a module, for executors that use other processes.
+    The mapped functions are defined in a module, so that executors can send them to other processes.
     """
 
     protocol = Executor
 
     def test_it_starts_workers(self) -> None:
-        """At least one."""
+        """``start`` returns an ``ExecutorRun`` with at least one worker."""
         with self._started() as run:
-            assert isinstance(run, ExecutorRun)
-            assert run.workers >= 1
+            assert isinstance(run, ExecutorRun), "start() must return an ExecutorRun; a member is missing"
+            assert run.workers >= 1, f"expected at least 1 worker, found {run.workers}"
 
     def test_every_item_has_its_result(self) -> None:
-        """For any number of items, however many workers there are."""
+        """``map`` returns one result per item, for any number of items and workers."""
         with self._started() as run:
             for n in (0, 1, run.workers, 10 * run.workers + 1):
-                assert run.map(_square, range(n)) == [_square(item) for item in range(n)]
+                expected = [_square(item) for item in range(n)]
+                assert run.map(_square, range(n)) == expected, (
+                    f"map() must return the results of all {n} items"
+                )
 
     def test_results_come_in_the_order_of_the_items(self) -> None:
-        """Though the first items take the longest."""
+        """Results are in the order of the items, even if the first items take the longest."""
         delays = [0.02, 0.01, 0.0, 0.005, 0.0, 0.0]
         with self._started() as run:
-            assert run.map(_sleep, delays) == delays
+            assert run.map(_sleep, delays) == delays, "map() must return results in the order of the items"
 
     def test_items_may_come_from_a_generator(self) -> None:
-        """Which is read once."""
+        """``map`` iterates over the items only once."""
         with self._started() as run:
-            assert run.map(_square, iter([3, 1, 2])) == [9, 1, 4]
+            results = run.map(_square, iter([3, 1, 2]))
+            assert results == [9, 1, 4], "map() must accept a generator, and iterate over it only once"
 
-    def test_items_are_asked_for_where_map_is_called(self) -> None:
-        """In that thread: what makes the items may not like others."""
-        asked: list[int] = []
+    def test_items_are_requested_in_the_calling_thread(self) -> None:
+        """The generator of the items runs in the thread that calls ``map``."""
+        threads: list[int] = []
 
         def items() -> Iterator[int]:
             for item in range(5):
-                asked.append(threading.get_ident())
+                threads.append(threading.get_ident())
                 yield item
 
         with self._started() as run:
             run.map(_square, items())
-        assert asked == [threading.get_ident()] * 5
+        assert threads == [threading.get_ident()] * 5, (
+            "map() must iterate over the items in the calling thread"
+        )
 
-    def test_an_exception_of_the_items_is_raised(self) -> None:
-        """What cannot be made is not left out."""
+    def test_an_exception_of_the_generator_is_raised(self) -> None:
+        """An exception in the generator of the items is raised by ``map``."""
         with self._started() as run, pytest.raises(KeyError, match="no item 2"):
             run.map(_square, _two_items())
 
-    def test_an_exception_is_raised_where_map_is_called(self) -> None:
-        """That of the first item which fails, as if the items were worked on one by one."""
+    def test_the_exception_of_the_first_failing_item_is_raised(self) -> None:
+        """``map`` raises the exception that processing the items one by one would raise."""
         with self._started() as run, pytest.raises(ZeroDivisionError) as caught:
             run.map(_fail_from_two_on, [0, 1, 2, 3, 4, 5])
-        assert str(caught.value) == "item 2"
+        assert str(caught.value) == "item 2", "map() must raise the exception of the first failing item"
 
     def test_workers_survive_an_exception(self) -> None:
-        """The next items are worked on as ever."""
+        """After an exception, ``map`` processes further items."""
         with self._started() as run:
             with pytest.raises(ZeroDivisionError):
                 run.map(_fail_from_two_on, [2, 0])
-            assert run.map(_fail_from_two_on, [0, 1]) == [0, 1]
+            assert run.map(_fail_from_two_on, [0, 1]) == [0, 1], "map() must work after an exception"
 
     def test_workers_can_be_started_again(self) -> None:
-        """After others were let go, and beside them."""
+        """Workers can be started while others are running, and after others were shut down."""
         with self._started() as one:
             with self._started() as other:
-                assert one.map(_square, [1, 2]) == other.map(_square, [1, 2])
-            assert one.map(_square, [3]) == [9]
+                assert one.map(_square, [1, 2]) == other.map(_square, [1, 2]) == [1, 4], (
+                    "workers started side by side must not affect each other"
+                )
+            assert one.map(_square, [3]) == [9], "close() must not shut down the workers of another run"
 
     @contextmanager
     def _started(self) -> Iterator[ExecutorRun]:

@@ -1,4 +1,4 @@
-"""What the contracts have in common: running a law on many examples, and comparing to the last bit."""
+"""Functions that the contracts share: testing a law with many examples, and comparisons to the last bit."""
 
 from __future__ import annotations
 
@@ -33,33 +33,33 @@ TOLERANCE = 1e-12
 
 
 def for_all(law: Callable[..., None], /, **strategies: SearchStrategy[Any]) -> None:
-    """Run *law* on examples of its arguments.
+    """Test *law* with examples of its arguments.
 
-    The law is a function within a test, not a decorated method: what hypothesis has decorated belongs
-    to one class, while these are inherited by many. It may use what its subclass declares, too. Neither the
-    speed of a component nor that of the computer is a law, so nothing here is timed.
+    The law is a function inside a test, not a decorated method, because a method decorated by hypothesis
+    belongs to one class, while these tests are inherited by many. It can also use attributes of the subclass.
+    There is no time limit, since neither a slow component nor a slow computer breaks a law.
     """
     untimed = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
     untimed(given(**strategies)(law))()
 
 
 def at_most(smaller: float, larger: float) -> bool:
-    """Say whether *smaller* <= *larger*, to a relative 1e-12.
+    """Return whether *smaller* <= *larger*, with a relative tolerance of 1e-12.
 
-    Below the smallest normal number a float has no relative precision: such a difference is none.
+    Differences below the smallest normal number are ignored, since such floats have no relative precision.
     """
     slack = TOLERANCE * max(abs(smaller), abs(larger))
     return smaller <= larger + max(slack, sys.float_info.min)
 
 
 def same_bits(one: Any, other: Any) -> bool:
-    """Say whether two arrays agree in shape, type and every bit; a NaN equals itself."""
+    """Return whether two arrays agree in shape, type and every bit; a NaN equals itself."""
     one, other = np.asarray(one), np.asarray(other)
     return bool(one.shape == other.shape and one.dtype == other.dtype and one.tobytes() == other.tobytes())
 
 
 def same_outcome(one: Outcome, other: Outcome) -> bool:
-    """Say whether two outcomes agree in every bit."""
+    """Return whether two outcomes agree in every bit."""
     return (
         one.diverged_at == other.diverged_at
         and same_bits(one.steps, other.steps)
@@ -69,19 +69,19 @@ def same_outcome(one: Outcome, other: Outcome) -> bool:
 
 
 def same_arrays(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
-    """Say whether two mappings have the same names and, for each, the same bits."""
+    """Return whether two mappings have the same names and, for each name, the same bits."""
     return set(one) == set(other) and all(same_bits(one[name], other[name]) for name in one)
 
 
 def accepted(check: Callable[[int], object], numbers: range) -> list[int]:
-    """Return those of *numbers* that *check* does not refuse."""
+    """Return the *numbers* that *check* accepts."""
     return [number for number in numbers if refusal(check, number) is None]
 
 
 def refusal(check: Callable[[int], object], number: int) -> str | None:
-    """Return the message with which *check* refuses *number*, or ``None`` if it does not.
+    """Return the message with which *check* refuses *number*, or ``None`` if it accepts it.
 
-    Only a :class:`ConfigurationError` is a refusal; any other exception is a fault and passes.
+    Only a :class:`ConfigurationError` is a refusal; any other exception is a bug and propagates.
     """
     try:
         check(number)
@@ -92,47 +92,56 @@ def refusal(check: Callable[[int], object], number: int) -> str | None:
 
 @contextmanager
 def global_random_state_untouched() -> Iterator[None]:
-    """Make sure that nobody draws from, or seeds, the generators that all code shares."""
+    """Assert that the global random generators of Python and numpy are neither used nor seeded."""
     before = random.getstate(), _numpy_state()
     yield
-    assert random.getstate() == before[0], "Python's global random state was changed"
-    assert _numpy_state() == before[1], "numpy's global random state was changed"
+    use_own = "draw from the generator that is passed to the component only"
+    assert random.getstate() == before[0], f"Python's global random state was changed; {use_own}"
+    assert _numpy_state() == before[1], f"numpy's global random state was changed; {use_own}"
 
 
 def _numpy_state() -> list[str]:
-    state = np.random.get_state(legacy=False)  # noqa: NPY002 - to see that nobody uses it
+    state = np.random.get_state(legacy=False)  # noqa: NPY002 - to check that it is not used
     return [repr(state[key]) for key in sorted(state)] + [state["state"]["key"].tobytes().hex()]
 
 
 def random_network(inputs: int, outputs: int, seed: int, scale: float) -> Network:
-    """Return a network with random weights whose outputs reach up to about *scale*.
+    """Return a network with random weights whose outputs reach about *scale*.
 
-    It refuses points of another shape or type than a network is promised.
+    It asserts that its points have the shape and type that encoders must pass to networks.
     """
     rng = np.random.default_rng(seed)
     weights, bias = rng.normal(size=(inputs, outputs)), rng.normal(size=outputs)
 
     def network(points: np.ndarray[Any, np.dtype[np.float64]]) -> np.ndarray[Any, np.dtype[np.float64]]:
-        assert points.dtype == np.float64, f"a network takes float64, not {points.dtype}"
-        assert points.ndim == 2, f"a network takes float64[n, {inputs}], not {points.shape}"
-        assert points.shape[1] == inputs, f"a network takes float64[n, {inputs}], not {points.shape}"
-        assert np.isfinite(points).all(), "a network takes finite points"
+        assert points.dtype == np.float64, f"a network requires float64 points, found {points.dtype}"
+        assert points.ndim == 2, f"a network requires points of shape (n, {inputs}), found {points.shape}"
+        assert points.shape[1] == inputs, (
+            f"a network requires points of shape (n, {inputs}), found {points.shape}"
+        )
+        assert np.isfinite(points).all(), "a network requires finite points"
         return scale * np.sin(points @ weights + bias)
 
     return network
 
 
 def assert_is_mesh(part: GeometryPart, frames: int) -> None:
-    """Assert that a part of a geometry can be drawn: it has faces, and all their corners at each time."""
-    assert part.name.strip(), "a part needs a name"
-    assert re.fullmatch("#[0-9a-fA-F]{6}", part.colour), f"'{part.colour}' is no colour like #0072b2"
-    assert 0.0 < part.opacity <= 1.0
+    """Assert that a part of a geometry can be drawn: it has faces, and finite corners in every frame."""
+    assert part.name.strip(), "a part requires a name that is not empty"
+    assert re.fullmatch("#[0-9a-fA-F]{6}", part.colour), (
+        f"{part.name}: expected a color like #0072b2, found '{part.colour}'"
+    )
+    assert 0.0 < part.opacity <= 1.0, f"{part.name}: expected 0 < opacity <= 1, found {part.opacity}"
     count = part.vertices.shape[1]
-    assert part.vertices.shape == (frames, count, 3)
-    assert np.isfinite(part.vertices).all()
-    assert part.faces.dtype == np.int64
-    assert part.faces.ndim == 2
-    assert part.faces.shape[1] == 4
-    assert len(part.faces) > 0, f"there is nothing to see of {part.name}"
-    assert part.faces.min() >= 0
-    assert part.faces.max() < count
+    assert part.vertices.shape == (frames, count, 3), (
+        f"{part.name}: expected vertices of shape ({frames}, n, 3), found {part.vertices.shape}"
+    )
+    assert np.isfinite(part.vertices).all(), f"{part.name}: expected finite vertices"
+    assert part.faces.dtype == np.int64, f"{part.name}: expected int64 faces, found {part.faces.dtype}"
+    assert part.faces.ndim == 2, f"{part.name}: expected faces of shape (n, 4), found {part.faces.shape}"
+    assert part.faces.shape[1] == 4, f"{part.name}: expected faces of shape (n, 4), found {part.faces.shape}"
+    assert len(part.faces) > 0, f"{part.name}: expected at least one face, found none"
+    assert part.faces.min() >= 0, f"{part.name}: expected indices of vertices, found {part.faces.min()}"
+    assert part.faces.max() < count, (
+        f"{part.name}: expected indices below the {count} vertices, found {part.faces.max()}"
+    )

@@ -17,44 +17,48 @@ __all__ = ["ObjectiveContract"]
 class ObjectiveContract(ComponentContract[Objective]):
     """The laws of an :class:`~evoframe.Objective`.
 
-    An objective that needs more of an outcome than its record says overrides :meth:`outcomes`.
+    If the objective requires more of an outcome than its record declares, override :meth:`outcomes`.
     """
 
     protocol = Objective
 
     def outcomes(self) -> st.SearchStrategy[Outcome]:
-        """Return outcomes as a simulator delivers them for the objective's record."""
+        """Return outcomes like those of a simulator for the objective's record."""
         record = self.component.record
         least = 1 + math.ceil(record.until / _interval(record))
         rows = st.integers(least, least + 20) if record.samples is None else st.just(len(record.samples))
         extents = st.sampled_from([0.0, 1e-3, 1.0, 1e6])
         return st.builds(_outcome, st.just(record), rows, st.integers(0, 2**32 - 1), extents)
 
-    def test_it_says_what_must_be_recorded(self) -> None:
-        """At least one track."""
-        assert isinstance(self.component.record, Record)
-        assert self.component.record.tracks
+    def test_its_record_has_tracks(self) -> None:
+        """The record names at least one track."""
+        record = self.component.record
+        assert isinstance(record, Record), f"expected a Record, found {type(record).__name__}"
+        assert record.tracks, "expected a record of at least one track, found none"
 
     def test_the_score_is_finite(self) -> None:
-        """For every outcome that did not diverge."""
+        """The score of every outcome that did not diverge is a finite float."""
 
         def law(outcome: Outcome) -> None:
             score = self.component.score(outcome)
-            assert isinstance(score, float), f"the score is a {type(score).__name__}, not a float"
-            assert math.isfinite(score)
+            assert isinstance(score, float), (
+                f"score() must return a float, found {type(score).__name__}; convert it with float()"
+            )
+            assert math.isfinite(score), f"score() must be finite for finite tracks, found {score}"
 
         for_all(law, outcome=self.outcomes())
 
     def test_the_same_outcome_has_the_same_score(self) -> None:
-        """To the last bit."""
+        """Equal outcomes have equal scores, to the last bit."""
 
         def law(outcome: Outcome) -> None:
-            assert self.component.score(outcome).hex() == self.component.score(outcome).hex()
+            first, second = self.component.score(outcome), self.component.score(outcome)
+            assert first.hex() == second.hex(), f"the same outcome scores {first}, then {second}"
 
         for_all(law, outcome=self.outcomes())
 
-    def test_the_outcome_is_left_alone(self) -> None:
-        """Others read it too."""
+    def test_the_outcome_is_not_changed(self) -> None:
+        """``score`` does not change the outcome, which others read too."""
 
         def law(outcome: Outcome) -> None:
             copy = Outcome(
@@ -63,7 +67,7 @@ class ObjectiveContract(ComponentContract[Objective]):
                 {name: track.copy() for name, track in outcome.tracks.items()},
             )
             self.component.score(outcome)
-            assert same_outcome(outcome, copy)
+            assert same_outcome(outcome, copy), "score() changes the arrays of the outcome; work on copies"
 
         for_all(law, outcome=self.outcomes())
 
@@ -73,7 +77,7 @@ def _interval(record: Record) -> float:
 
 
 def _outcome(record: Record, rows: int, seed: int, extent: float) -> Outcome:
-    """Return random positions of the size of *extent* for each track."""
+    """Return an outcome with random positions from -*extent* to *extent* for each track."""
     samples = np.arange(rows) if record.samples is None else np.array(record.samples)
     steps = np.concatenate([[0], samples + 1]) if record.initial else samples + 1
     rng = np.random.default_rng(seed)

@@ -35,290 +35,377 @@ __all__ = ["SimulatorContract"]
 class SimulatorContract(ComponentContract[Simulator]):
     """The laws of a :class:`~evoframe.Simulator`.
 
-    A subclass overrides :meth:`designs`, and :meth:`diverging` if a simulation can diverge. What diverges at
-    step 0 has never begun, and may have no samples. What a simulator may offer or not (variants, formats,
-    random controllers, published bodies) is tested where it is offered.
+    Override :meth:`designs`, and :meth:`diverging` if a simulation can diverge. A simulation that diverges at
+    step 0 has not started, and may have no samples. Optional capabilities (variants, formats, geometries,
+    random controllers, published bodies) are tested if the simulator has them.
     """
 
     protocol = Simulator
 
     def designs(self) -> Sequence[Design]:
-        """Return at least three designs, best with some whose keys are equal though they differ."""
-        pytest.fail("override designs() with at least three examples")
+        """Return at least three designs; preferably, some different ones with equal keys."""
+        pytest.fail("override designs() to return at least three examples")
 
     def diverging(self) -> Sequence[Design]:
         """Return designs whose simulation diverges."""
         return []
 
     def record(self) -> Record:
-        """Return what is recorded; every track after every step, unless overridden."""
+        """Return the record of the tests; by default, all tracks after every step."""
         return Record(tuple(self.component.tracks))
 
     def test_there_are_three_examples_with_the_required_roles(self) -> None:
-        """Otherwise the other tests say little."""
-        assert len(self.designs()) >= 3
+        """``designs`` returns at least three designs with all required roles; the other tests use them."""
+        n_designs = len(self.designs())
+        assert n_designs >= 3, f"override designs() to return at least three examples, found {n_designs}"
         for design in [*self.designs(), *self.diverging()]:
-            assert set(self.component.requires) <= set(design.roles)
+            missing = sorted(set(self.component.requires) - set(design.roles))
+            assert not missing, f"designs() and diverging() must have the required roles, missing: {missing}"
 
     def test_a_record_of_its_tracks_is_accepted(self) -> None:
-        """There is at least one."""
-        assert self.component.tracks
+        """There is at least one track, and ``check`` accepts all of them."""
+        assert self.component.tracks, "expected at least one track, found none"
         self.component.check(self.record())
 
     def test_an_unknown_track_is_refused(self) -> None:
-        """Before anything runs."""
+        """``check`` refuses an unknown track by a ``ConfigurationError`` that names it."""
         with pytest.raises(ConfigurationError, match="no-such-track"):
             self.component.check(Record(("no-such-track",)))
 
     def test_a_sample_after_the_end_is_refused(self) -> None:
-        """Before anything runs."""
+        """``check`` refuses a sample after the end of the simulation."""
         with pytest.raises(ConfigurationError):
             self.component.check(attrs.evolve(self.record(), samples=(10**9,)))
 
-    def test_an_end_before_the_time_to_be_reached_is_refused(self) -> None:
-        """Before anything runs; a time that is reached is no reason."""
+    def test_a_simulation_that_ends_before_record_until_is_refused(self) -> None:
+        """``check`` refuses a record whose ``until`` is after the end, and accepts one that is reached."""
         self.component.check(attrs.evolve(self.record(), until=0.0))
         with pytest.raises(ConfigurationError):
             self.component.check(attrs.evolve(self.record(), until=1e9))
 
-    def test_the_time_to_be_reached_changes_nothing(self) -> None:
-        """It only says what is too short."""
+    def test_record_until_does_not_change_outcomes(self) -> None:
+        """``Record.until`` is a requirement only, and does not change outcomes."""
         reached = min(float(o.times[-1]) for o in self._simulate(self.designs()) if len(o.times))
         until = attrs.evolve(self.record(), until=reached / 2)
         self.component.check(until)
-        _assert_same(self._simulate(self._all(), until), self._simulate(self._all()))
+        _assert_same(
+            self._simulate(self._all(), until), self._simulate(self._all()), "Record.until changes outcomes"
+        )
 
     def test_each_design_has_an_outcome(self) -> None:
-        """No design, no outcome."""
-        assert len(self._simulate(self.designs())) == len(self.designs())
-        assert len(self._simulate([])) == 0
+        """``simulate`` returns one outcome per design, none for an empty batch."""
+        outcomes, designs = len(self._simulate(self.designs())), len(self.designs())
+        assert outcomes == designs, f"expected {designs} outcomes for {designs} designs, found {outcomes}"
+        outcomes = len(self._simulate([]))
+        assert outcomes == 0, f"expected no outcomes for an empty batch, found {outcomes}"
 
     def test_outcomes_have_the_promised_arrays(self) -> None:
-        """One row a sample in each of them."""
+        """All arrays of an outcome have the declared types, and one row per sample."""
         record = self.record()
         for outcome in self._simulate(self._all()):
             samples = len(outcome.steps)
-            if record.samples is not None and _has_begun(outcome):
-                assert samples == len(record.samples) + record.initial
-            assert outcome.steps.dtype == np.int64
-            assert outcome.times.dtype == np.float64
-            assert outcome.times.shape == (samples,)
-            assert set(outcome.tracks) == set(record.tracks)
+            if record.samples is not None and _has_started(outcome):
+                expected = len(record.samples) + record.initial
+                assert samples == expected, f"the record requires {expected} samples, found {samples}"
+            assert outcome.steps.dtype == np.int64, f"steps must be int64, found {outcome.steps.dtype}"
+            assert outcome.times.dtype == np.float64, f"times must be float64, found {outcome.times.dtype}"
+            assert outcome.times.shape == (samples,), (
+                f"times must have shape ({samples},) like steps, found {outcome.times.shape}"
+            )
+            assert set(outcome.tracks) == set(record.tracks), (
+                f"an outcome must have the recorded tracks {record.tracks}, found {tuple(outcome.tracks)}"
+            )
             for name, track in outcome.tracks.items():
-                assert track.dtype == np.float64
-                assert track.shape[:1] == (samples,)
+                assert track.dtype == np.float64, f"track '{name}' must be float64, found {track.dtype}"
+                assert track.shape[:1] == (samples,), (
+                    f"track '{name}' must have {samples} rows like steps, found shape {track.shape}"
+                )
                 if name in self.component.tracks:
-                    assert track.shape == (samples, 3), f"the track '{name}' is no point"
+                    assert track.shape == (samples, 3), (
+                        f"track '{name}' must have shape ({samples}, 3), found {track.shape}"
+                    )
 
-    def test_time_goes_on(self) -> None:
-        """From sample to sample, in steps and in seconds."""
+    def test_time_increases(self) -> None:
+        """Steps and times increase from sample to sample."""
         for outcome in self._simulate(self._all()):
-            assert (np.diff(outcome.steps) > 0).all()
-            assert (np.diff(outcome.times) > 0).all()
+            assert (np.diff(outcome.steps) > 0).all(), f"steps must increase, found {outcome.steps}"
+            assert (np.diff(outcome.times) > 0).all(), f"times must increase, found {outcome.times}"
 
     def test_positions_are_finite_unless_the_simulation_diverged(self) -> None:
-        """Nothing is hidden: who has a NaN says at which step it came."""
+        """Positions are finite before the step of the divergence."""
         for outcome in self._simulate(self._all()):
             sound = outcome.steps < (np.inf if outcome.diverged_at is None else outcome.diverged_at)
-            for track in outcome.tracks.values():
-                assert np.isfinite(track[sound]).all()
+            for name, track in outcome.tracks.items():
+                assert np.isfinite(track[sound]).all(), (
+                    f"track '{name}' must be finite before diverged_at = {outcome.diverged_at}"
+                )
 
-    def test_divergence_is_said(self) -> None:
-        """The step is named, and from there on positions are NaN."""
+    def test_divergence_is_reported(self) -> None:
+        """A diverged outcome has the step of the divergence, from which positions are NaN."""
         for outcome in self._simulate(self.diverging()):
-            assert outcome.diverged_at is not None
+            assert outcome.diverged_at is not None, "the outcomes of diverging() must have diverged_at"
             lost = outcome.steps >= outcome.diverged_at
-            for track in outcome.tracks.values():
-                assert np.isnan(track[lost]).all()
+            for name, track in outcome.tracks.items():
+                assert np.isnan(track[lost]).all(), (
+                    f"track '{name}' must be NaN from diverged_at = {outcome.diverged_at}"
+                )
 
     def test_a_simulation_can_be_repeated(self) -> None:
-        """To the last bit."""
-        _assert_same(self._simulate(self._all()), self._simulate(self._all()))
+        """Repeated simulations have equal outcomes, to the last bit."""
+        _assert_same(
+            self._simulate(self._all()),
+            self._simulate(self._all()),
+            "two simulations of the same designs differ",
+        )
 
     def test_a_batch_equals_its_members_one_by_one(self) -> None:
-        """To the last bit, in any order, and beside a design that diverges."""
+        """An outcome does not depend on the batch or its order, nor on a diverging design in it."""
         together = self._simulate(self._all())
-        _assert_same(together, [self._simulate([design])[0] for design in self._all()])
-        _assert_same(together, self._simulate(self._all()[::-1])[::-1])
+        _assert_same(
+            together,
+            [self._simulate([design])[0] for design in self._all()],
+            "outcomes in a batch differ from those of the designs one by one",
+        )
+        _assert_same(
+            together,
+            self._simulate(self._all()[::-1])[::-1],
+            "outcomes depend on the order of the designs in a batch",
+        )
 
     def test_any_number_of_threads_may_call_at_once(self) -> None:
-        """To the last bit."""
+        """Outcomes are the same if several threads simulate in parallel, to the last bit."""
         designs = self._all() * 4
         with ThreadPoolExecutor(4) as pool:
             outcomes = list(pool.map(lambda design: self._simulate([design])[0], designs))
-        _assert_same(outcomes, list(self._simulate(self._all())) * 4)
+        _assert_same(
+            outcomes,
+            list(self._simulate(self._all())) * 4,
+            "outcomes differ if several threads simulate in parallel; do not share buffers",
+        )
 
     def test_recording_more_tracks_changes_nothing(self) -> None:
-        """Each track alone is the same as among the others."""
+        """A track recorded alone equals the track recorded with others."""
         whole = self._simulate(self._all())
         for track in self.record().tracks:
             alone = self._simulate(self._all(), attrs.evolve(self.record(), tracks=(track,)))
             for one, all_ in zip(alone, whole, strict=True):
-                assert same_outcome(one, attrs.evolve(all_, tracks={track: all_.tracks[track]}))
+                assert same_outcome(one, attrs.evolve(all_, tracks={track: all_.tracks[track]})), (
+                    f"track '{track}' recorded alone differs from the same track recorded with others"
+                )
 
     def test_recording_more_samples_changes_nothing(self) -> None:
-        """One sample alone is the same as among the others."""
+        """A sample recorded alone equals the sample recorded with others."""
         every_sample = attrs.evolve(self.record(), samples=None, initial=False)
         whole = self._simulate(self._all(), every_sample)
-        last = min(len(outcome.steps) for outcome in whole if _has_begun(outcome)) - 1
+        last = min(len(outcome.steps) for outcome in whole if _has_started(outcome)) - 1
         for sample in sorted({0, last // 2, last}):
             record = attrs.evolve(every_sample, samples=(sample,))
             for one, all_ in zip(self._simulate(self._all(), record), whole, strict=True):
-                if _has_begun(all_):
-                    assert same_outcome(one, _rows(all_, slice(sample, sample + 1)))
+                if _has_started(all_):
+                    assert same_outcome(one, _rows(all_, slice(sample, sample + 1))), (
+                        f"sample {sample} recorded alone differs from the same sample recorded with others"
+                    )
 
     def test_the_initial_state_is_one_more_row(self) -> None:
-        """In front of the others, before the first step."""
+        """``Record.initial`` adds one row for the state before the first step, and changes nothing else."""
         whole = self._simulate(self._all(), attrs.evolve(self.record(), initial=False))
         more = self._simulate(self._all(), attrs.evolve(self.record(), initial=True))
         for one, all_ in zip(more, whole, strict=True):
-            if _has_begun(all_):
-                assert one.steps[0] == 0
-                assert one.times[0] == 0
-                assert same_outcome(_rows(one, slice(1, None)), all_)
+            if _has_started(all_):
+                assert one.steps[0] == 0, f"the initial state must have step 0, found {one.steps[0]}"
+                assert one.times[0] == 0, f"the initial state must have time 0, found {one.times[0]}"
+                assert same_outcome(_rows(one, slice(1, None)), all_), (
+                    "recording the initial state changes the other samples"
+                )
 
     def test_sampling_more_often_changes_nothing(self) -> None:
-        """Where two records have a step in common, they agree."""
+        """Outcomes recorded at different intervals agree in their common steps."""
         often = self._simulate(self._all(), Record(self.record().tracks))
         every = float(often[0].times[-1]) / 3
         seldom = self._simulate(self._all(), Record(self.record().tracks, every=every))
         for one, all_ in zip(seldom, often, strict=True):
-            assert set(one.steps) <= set(all_.steps)
-            assert same_outcome(one, _rows(all_, np.isin(all_.steps, one.steps)))
+            assert set(one.steps) <= set(all_.steps), (
+                "the record of every step must contain every sampled step"
+            )
+            assert same_outcome(one, _rows(all_, np.isin(all_.steps, one.steps))), (
+                f"samples differ if they are recorded every {every} s instead of after every step"
+            )
 
     def test_keys_are_bytes_and_equal_for_equal_designs(self) -> None:
-        """A copy of a design has its key."""
+        """Keys are bytes, and a copy of a design has the same key."""
         for design in self._all():
             copy = Design({role: array.copy() for role, array in design.roles.items()})
             key = self.component.key(design, self.record())
-            assert isinstance(key, bytes)
-            assert key == self.component.key(copy, self.record())
+            assert isinstance(key, bytes), f"key() must return bytes, found {type(key).__name__}"
+            assert key == self.component.key(copy, self.record()), (
+                "key() differs for a copy of the design; compute it from the values of the arrays"
+            )
 
     def test_equal_keys_mean_equal_outcomes(self) -> None:
-        """Whatever a key leaves out cannot matter; what is recorded is part of it."""
+        """Designs and records with equal keys have equal outcomes."""
         known: dict[bytes, Outcome] = {}
         shorter = attrs.evolve(self.record(), samples=(0,))
         for record in (self.record(), shorter):
             for design, outcome in zip(self._all(), self._simulate(self._all(), record), strict=True):
                 first = known.setdefault(self.component.key(design, record), outcome)
-                assert same_outcome(first, outcome)
+                assert same_outcome(first, outcome), (
+                    "two outcomes with the same key differ; the key must contain everything that affects them"
+                )
 
     def test_variants_are_scored_by_the_same_objective(self) -> None:
-        """Each has a name, and an outcome with the tracks and as many samples as the unchanged simulation."""
+        """A variant has a name, and the tracks and number of samples of the unchanged simulation."""
         record = self.record()
         for design in self.designs():
             [unchanged] = self._simulate([design])
             for variant in self._variants(design):
-                assert isinstance(variant, Variant)
-                assert variant.name.strip(), "a variant needs a name"
-                assert variant.name != UNCHANGED, f"evoframe itself simulates what is {UNCHANGED}"
+                assert isinstance(variant, Variant), f"expected a Variant, found {type(variant).__name__}"
+                assert variant.name.strip(), "a variant requires a name that is not empty"
+                assert variant.name != UNCHANGED, (
+                    f"the name '{UNCHANGED}' is reserved for the unchanged design"
+                )
                 variant.simulator.check(variant.record)
                 [outcome] = variant.simulator.simulate([variant.design], variant.record)
-                assert variant.record.tracks == record.tracks
-                assert variant.record.initial == record.initial
-                assert (variant.record.samples is None) == (record.samples is None)
-                if record.samples is not None and _has_begun(outcome) and _has_begun(unchanged):
-                    assert len(outcome.steps) == len(unchanged.steps)
+                assert variant.record.tracks == record.tracks, (
+                    f"variant '{variant.name}' must record the tracks {record.tracks}"
+                )
+                assert variant.record.initial == record.initial, (
+                    f"variant '{variant.name}' must record with initial = {record.initial}"
+                )
+                assert (variant.record.samples is None) == (record.samples is None), (
+                    f"variant '{variant.name}' must select samples if and only if the given record does"
+                )
+                if record.samples is not None and _has_started(outcome) and _has_started(unchanged):
+                    n_samples = len(unchanged.steps)
+                    assert len(outcome.steps) == n_samples, (
+                        f"variant '{variant.name}' must have {n_samples} samples, found {len(outcome.steps)}"
+                    )
 
     def test_the_same_design_has_the_same_variants(self) -> None:
-        """To the last bit, whatever chance has drawn."""
+        """A design has the same variants every time, to the last bit."""
         for design in self.designs():
             first, second = self._variants(design), self._variants(design)
             for one, other in zip(first, second, strict=True):
-                assert (one.name, one.simulator, one.record) == (other.name, other.simulator, other.record)
-                assert same_arrays(one.design.roles, other.design.roles)
+                assert (one.name, one.simulator, one.record) == (other.name, other.simulator, other.record), (
+                    "variants() returns different variants for the same design"
+                )
+                assert same_arrays(one.design.roles, other.design.roles), (
+                    f"variant '{one.name}' has a different design each time; seed its random generator"
+                )
 
     def test_each_format_gives_the_same_bytes_twice(self) -> None:
-        """With what it cannot say in words."""
+        """An export is the same every time; omitted settings are listed as text."""
         component = self.component
-        assert hasattr(component, "formats") == hasattr(component, "export"), "one of both is missing"
+        assert hasattr(component, "formats") == hasattr(component, "export"), (
+            "a simulator that exports designs must have both formats and export()"
+        )
         if not isinstance(component, SupportsExport):
             return
         for format_ in component.formats:
-            assert re.fullmatch("[a-z0-9]+", format_), f"'{format_}' cannot be the ending of a file"
-            assert format_ != "json", "a run's champion.json is evoframe's own"
+            assert re.fullmatch("[a-z0-9]+", format_), (
+                f"formats must be file extensions of letters a-z and digits, found '{format_}'"
+            )
+            assert format_ != "json", "the format 'json' is reserved for the champion.json of a run"
             for design in self.designs():
                 first, second = (component.export(design, format_) for _ in range(2))
-                assert isinstance(first, Export)
-                assert isinstance(first.data, bytes)
-                assert first.data, "an export without any bytes"
-                assert all(isinstance(entry, str) and entry.strip() for entry in first.left_out)
-                assert first == second
+                assert isinstance(first, Export), f"expected an Export, found {type(first).__name__}"
+                found = type(first.data).__name__
+                assert isinstance(first.data, bytes), f"{format_}: data must be bytes, found {found}"
+                assert first.data, f"{format_}: data must not be empty"
+                assert all(isinstance(entry, str) and entry.strip() for entry in first.left_out), (
+                    f"{format_}: left_out must contain strings that are not empty, found {first.left_out}"
+                )
+                assert first == second, f"{format_}: two exports of the same design differ"
 
     def test_a_geometry_has_frames_of_meshes(self) -> None:
-        """As many as asked for at most, from rest on; every face has corners, every part is to be seen."""
+        """A geometry has at most the requested frames, starts at rest, and consists of visible meshes."""
         asked = [(frames, geometry) for frames in (1, 2, 7) for geometry in self._geometries(frames)]
         for frames, geometry in asked:
-            assert 1 <= len(geometry.times) <= frames
-            assert geometry.times[0] == 0.0
-            assert (np.diff(geometry.times) > 0).all()
-            assert geometry.parts
+            n_frames = len(geometry.times)
+            assert 1 <= n_frames <= frames, f"expected 1 to {frames} frames, found {n_frames}"
+            assert geometry.times[0] == 0.0, f"times must start at 0, found {geometry.times[0]}"
+            assert (np.diff(geometry.times) > 0).all(), f"times must increase, found {geometry.times}"
+            assert geometry.parts, "a geometry must have at least one part"
             for part in geometry.parts:
-                assert_is_mesh(part, len(geometry.times))
+                assert_is_mesh(part, n_frames)
             for name, track in geometry.tracks.items():
-                assert name in self.component.tracks
-                assert track.shape == (len(geometry.times), 3)
-                assert np.isfinite(track).all()
+                assert name in self.component.tracks, f"unknown track '{name}' in a geometry"
+                assert track.shape == (n_frames, 3), (
+                    f"track '{name}' must have shape ({n_frames}, 3), found {track.shape}"
+                )
+                assert np.isfinite(track).all(), f"track '{name}' must be finite"
 
     def test_one_frame_is_the_first_of_many(self) -> None:
-        """To the last bit: what moves starts from what stands still."""
+        """The single frame of a geometry equals the first of several, to the last bit."""
         for one, many in zip(self._geometries(1), self._geometries(5), strict=True):
             for part, moving in zip(one.parts, many.parts, strict=True):
-                assert np.array_equal(part.vertices[0], moving.vertices[0])
-                assert np.array_equal(part.faces, moving.faces)
+                assert np.array_equal(part.vertices[0], moving.vertices[0]), (
+                    f"{part.name}: the vertices of a single frame differ from those of the first of 5 frames"
+                )
+                assert np.array_equal(part.faces, moving.faces), (
+                    f"{part.name}: the faces of a single frame differ from those of 5 frames"
+                )
 
     def _geometries(self, frames: int) -> list[Geometry]:
         if not isinstance(self.component, SupportsGeometry):
             return []
         return [self.component.geometry(design, frames) for design in self.designs()]
 
-    def test_a_random_controller_is_that_of_the_generators_state(self) -> None:
-        """The same again from the same state, another from another."""
+    def test_a_random_controller_depends_on_the_generator(self) -> None:
+        """The same random state gives the same controller, a different state a different one."""
         for design in self.designs() if isinstance(self.component, SupportsRandomControllers) else []:
             one, again, other = (self._drawn(design, seed).roles for seed in (1, 1, 2))
-            assert same_arrays(one, again)
-            assert not same_arrays(one, other), "chance changes nothing"
+            assert same_arrays(one, again), "random_controller() differs for the same random state"
+            assert not same_arrays(one, other), "random_controller() must draw from the given generator"
 
-    def test_a_random_controller_leaves_the_body(self) -> None:
-        """The roles stay, at least one of them as it was, and there is something to simulate."""
+    def test_a_random_controller_keeps_the_body(self) -> None:
+        """The roles are the same, at least one is unchanged, and the design can be simulated."""
         for design in self.designs() if isinstance(self.component, SupportsRandomControllers) else []:
             drawn = self._drawn(design, 1)
-            assert isinstance(drawn, Design)
-            assert set(drawn.roles) == set(design.roles)
-            assert self._kept(design), "nothing is left of the body"
-            assert len(self._simulate([drawn])) == 1
+            assert isinstance(drawn, Design), f"expected a Design, found {type(drawn).__name__}"
+            assert set(drawn.roles) == set(design.roles), (
+                f"random_controller() must keep the roles {sorted(design.roles)}, found {sorted(drawn.roles)}"
+            )
+            assert self._kept(design), "random_controller() must keep the body: all roles have changed"
+            assert len(self._simulate([drawn])) == 1, (
+                "a design with a random controller must have one outcome"
+            )
 
-    def test_bodies_of_the_same_shape_are_given_the_same_random_controller(self) -> None:
-        """Whatever they are made of."""
+    def test_bodies_of_the_same_shape_get_the_same_random_controller(self) -> None:
+        """The random controller depends on the shape of a body, not on its materials."""
         known: dict[str, np.ndarray] = {}
         for design in self.designs() if isinstance(self.component, SupportsRandomControllers) else []:
             drawn = self._drawn(design, 1)
             shapes = repr(sorted((role, array.shape) for role, array in design.roles.items()))
             for role in sorted(set(drawn.roles) - self._kept(design)):
                 first = known.setdefault(f"{role} of {shapes}", drawn.roles[role])
-                assert same_arrays({role: first}, {role: drawn.roles[role]})
+                assert same_arrays({role: first}, {role: drawn.roles[role]}), (
+                    f"role '{role}' differs between bodies of the same shape for the same random state"
+                )
 
     def test_published_bodies_can_be_simulated(self) -> None:
-        """Each has a name of its own; they are the same every time."""
+        """Published bodies have different names, are the same every time, and can be simulated."""
         first, second = (
             [*self.component.published()] if isinstance(self.component, SupportsPublished) else []
             for _ in "12"
         )
         labels = [label for label, _ in first]
-        assert all(isinstance(label, str) and label.strip() for label in labels)
-        assert len(set(labels)) == len(labels), "two bodies have one name"
+        assert all(isinstance(label, str) and label.strip() for label in labels), (
+            f"published bodies require names that are not empty, found {labels}"
+        )
+        assert len(set(labels)) == len(labels), f"published bodies require different names, found {labels}"
         for (label, design), (same_label, same) in zip(first, second, strict=True):
-            assert set(self.component.requires) <= set(design.roles)
-            assert label == same_label
-            assert same_arrays(design.roles, same.roles)
-            assert len(self._simulate([design])) == 1
+            missing = sorted(set(self.component.requires) - set(design.roles))
+            assert not missing, f"published body '{label}' must have the required roles, missing: {missing}"
+            assert label == same_label, "published() returns different names each time"
+            assert same_arrays(design.roles, same.roles), f"published body '{label}' differs each time"
+            assert len(self._simulate([design])) == 1, f"published body '{label}' must have one outcome"
 
     def _drawn(self, design: Design, seed: int) -> Design:
         assert isinstance(self.component, SupportsRandomControllers)
         return self.component.random_controller(design, np.random.default_rng(seed))
 
     def _kept(self, design: Design) -> set[str]:
-        """Return the roles that no random controller changes."""
+        """Return the roles that random controllers do not change."""
         drawn = [self._drawn(design, seed).roles for seed in (1, 2)]
         return {
             role
@@ -340,17 +427,17 @@ class SimulatorContract(ComponentContract[Simulator]):
         return self.component.simulate(designs, record or self.record())
 
 
-def _assert_same(outcomes: Sequence[Outcome], others: Sequence[Outcome]) -> None:
+def _assert_same(outcomes: Sequence[Outcome], others: Sequence[Outcome], problem: str) -> None:
     for one, other in zip(outcomes, others, strict=True):
-        assert same_outcome(one, other)
+        assert same_outcome(one, other), problem
 
 
-def _has_begun(outcome: Outcome) -> bool:
+def _has_started(outcome: Outcome) -> bool:
     return outcome.diverged_at != 0
 
 
 def _rows(outcome: Outcome, rows: slice | np.ndarray) -> Outcome:
-    """Return *outcome* with some of its samples."""
+    """Return *outcome* with a selection of its samples."""
     return attrs.evolve(
         outcome,
         steps=outcome.steps[rows],

@@ -22,64 +22,78 @@ class CollaborationStrategyContract(ComponentContract[CollaborationStrategy]):
     """The laws of a :class:`~evoframe.CollaborationStrategy`.
 
     Attributes:
-        population_sizes: Sizes of populations to try; those that ``size`` refuses are not chosen from.
+        population_sizes: Sizes of populations to test; no members are selected from those that ``size``
+            refuses.
     """
 
     protocol = CollaborationStrategy
     population_sizes: ClassVar[range] = range(1, 17)
 
     def test_populations_are_refused_by_a_configuration_error_that_names_their_size(self) -> None:
-        """``size`` raises nothing else, and accepts something."""
+        """``size`` refuses by a ``ConfigurationError`` only, and accepts some population sizes."""
         refusals = {n: refusal(self.component.size, n) for n in self.population_sizes}
-        assert None in refusals.values(), f"size() refuses every population in {self.population_sizes}"
+        assert None in refusals.values(), (
+            f"size() refuses every population in {self.population_sizes}; "
+            "accept at least one, or override 'population_sizes'"
+        )
         for n_members, message in refusals.items():
-            assert message is None or str(n_members) in message
+            assert message is None or str(n_members) in message, (
+                f"the message with which size() refuses {n_members} members must contain that number"
+            )
 
     def test_no_more_collaborators_than_members_are_declared(self) -> None:
-        """A population too small is refused instead."""
+        """``size`` is between 1 and the population size; smaller populations are refused."""
         for n_members in accepted(self.component.size, self.population_sizes):
-            assert 1 <= self.component.size(n_members) <= n_members
+            declared = self.component.size(n_members)
+            assert 1 <= declared <= n_members, (
+                f"size({n_members}) must be between 1 and {n_members} or raise a ConfigurationError, "
+                f"found {declared}"
+            )
 
     def test_as_many_as_declared_are_chosen(self) -> None:
-        """A flat array of ``intp``."""
+        """``select`` returns an array ``intp[size(len(members))]``."""
 
         def law(members: list[Member], seed: int) -> None:
             chosen = self._select(members, seed)
-            assert chosen.dtype == np.intp
-            assert chosen.shape == (self.component.size(len(members)),)
+            assert chosen.dtype == np.intp, f"select() must return an intp array, found {chosen.dtype}"
+            declared = (self.component.size(len(members)),)
+            assert chosen.shape == declared, f"select() must return shape {declared}, found {chosen.shape}"
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
     def test_indices_are_valid(self) -> None:
-        """Each is that of a member."""
+        """Each chosen index is that of a member."""
 
         def law(members: list[Member], seed: int) -> None:
-            assert set(self._select(members, seed).tolist()) <= set(range(len(members)))
+            invalid = set(self._select(members, seed).tolist()) - set(range(len(members)))
+            assert not invalid, f"expected indices from 0 to {len(members) - 1}, found {sorted(invalid)}"
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
-    def test_nobody_is_chosen_twice(self) -> None:
+    def test_no_member_is_chosen_twice(self) -> None:
         """Collaborators are different members."""
 
         def law(members: list[Member], seed: int) -> None:
             chosen = self._select(members, seed).tolist()
-            assert len(set(chosen)) == len(chosen)
+            assert len(set(chosen)) == len(chosen), f"expected different indices, found {chosen}"
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
     def test_the_same_random_state_gives_the_same_choice(self) -> None:
-        """And nothing else is drawn from."""
+        """The choice depends on the members and the given generator only."""
 
         def law(members: list[Member], seed: int) -> None:
             with global_random_state_untouched():
                 first = self._select(members, seed)
                 second = self._select(tuple(members), seed)
-            assert first.tolist() == second.tolist()
+            assert first.tolist() == second.tolist(), (
+                "the same members and random state give different choices"
+            )
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
     def test_ties_are_broken_by_index(self) -> None:
-        """Of members that differ only in their ids, the first is chosen first, unless the choice is drawn."""
+        """Of members that differ only in their ids, the first is chosen first, unless choices are random."""
 
         def law(members: list[Member], seed: int) -> None:
             rng = np.random.default_rng(seed)
@@ -87,23 +101,29 @@ class CollaborationStrategyContract(ComponentContract[CollaborationStrategy]):
             if not _was_used(rng, seed):
                 for index in chosen:
                     twins = [i for i in range(index) if _are_equal(members[i], members[index])]
-                    assert set(twins) <= set(chosen[: chosen.index(index)])
+                    before = chosen[: chosen.index(index)]
+                    assert set(twins) <= set(before), (
+                        f"ties must be broken by index: expected {twins} before {index}, since these members "
+                        f"differ only in their ids; found {chosen}"
+                    )
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
     def test_no_diverged_member_is_chosen_while_a_clean_one_is_left(self) -> None:
-        """A member whose simulation diverged is a last resort."""
+        """Members with a diverged simulation are chosen last."""
 
         def law(members: list[Member], seed: int) -> None:
             chosen = self._select(members, seed).tolist()
             if any(members[index].diverged for index in chosen):
                 clean = [index for index, member in enumerate(members) if not member.diverged]
-                assert set(clean) <= set(chosen)
+                assert set(clean) <= set(chosen), (
+                    f"choose all clean members {clean} before a diverged one; found {chosen}"
+                )
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
     def populations(self) -> st.SearchStrategy[list[Member]]:
-        """Return evaluated populations of the accepted sizes, with many ties and some diverged members."""
+        """Return evaluated populations of accepted sizes, with many ties and some diverged members."""
         sizes = st.sampled_from(accepted(self.component.size, self.population_sizes))
         return sizes.flatmap(_members)
 
