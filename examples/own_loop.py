@@ -1,4 +1,4 @@
-"""Coevolution in a loop of your own: stop when nothing better was found for a while."""
+"""Coevolution in your own loop, which stops after ten turns without a better pair."""
 
 import evoframe
 
@@ -9,4 +9,4 @@ with evoframe.assemble(config) as coevolution:
         waited = 0 if turn.best_pair else waited + 1
         if waited == patience:
             break
-print(f"best displacement after {coevolution.turn} turns: {coevolution.best_score} m")
+print(f"best score after {coevolution.turn} turns: {1000 * coevolution.best_score:.2f} mm")

@@ -55,7 +55,7 @@ class _Task(Generic[T]):
     future: Future[Answer]
 
     def has_failed(self) -> bool:
-        """Return whether the function raised an exception; a lost worker is no failure before its retry."""
+        """Return whether the function raised an exception; ``False`` for a lost worker, which is retried."""
         return self.future.exception() is None and not self.future.result().succeeded
 
 

@@ -31,7 +31,7 @@ class AggregatorContract(ComponentContract[Aggregator]):
     counts: ClassVar[range] = range(-1, 31)
 
     def test_numbers_of_collaborators_are_refused_by_a_configuration_error(self) -> None:
-        """``check`` refuses n < 1 by a ``ConfigurationError`` with a message, and accepts some numbers."""
+        """``check`` raises only ``ConfigurationError`` with a message; it refuses n < 1, but not all n."""
         for n in self.counts:
             assert refusal(self.component.check, n) != "", f"check({n}) raises an error without a message"
         counts = accepted(self.component.check, self.counts)

@@ -45,7 +45,7 @@ class EvolverContract(ComponentContract[Evolver]):
     measures: ClassVar[tuple[str, ...]] = ()
 
     def test_sizes_are_refused_by_a_configuration_error(self) -> None:
-        """``check`` refuses by a ``ConfigurationError`` with a message only, and accepts the tested size."""
+        """``check`` raises only ``ConfigurationError`` with a message, and accepts the tested size."""
         for size in range(1, 41):
             assert refusal(self.component.check, size) != "", (
                 f"check({size}) raises an error without a message"

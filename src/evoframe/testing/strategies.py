@@ -30,7 +30,7 @@ class CollaborationStrategyContract(ComponentContract[CollaborationStrategy]):
     population_sizes: ClassVar[range] = range(1, 17)
 
     def test_populations_are_refused_by_a_configuration_error_that_names_their_size(self) -> None:
-        """``size`` refuses by a ``ConfigurationError`` only, and accepts some population sizes."""
+        """``size`` raises only ``ConfigurationError``, and accepts some population sizes."""
         refusals = {n: refusal(self.component.size, n) for n in self.population_sizes}
         assert None in refusals.values(), (
             f"size() refuses every population in {self.population_sizes}; "
