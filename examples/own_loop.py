@@ -9,5 +9,5 @@ with evoframe.assemble(config) as coevolution:
         waited = 0 if turn.best_pair else waited + 1
         if waited == patience:
             break
-if coevolution.best_score is not None:  # some simulation did not diverge
+if coevolution.best_score is not None:
     print(f"best score after {coevolution.turn} turns: {1000 * coevolution.best_score:.2f} mm")

@@ -45,10 +45,11 @@ class RoomyStagnation(neat.DefaultStagnation):  # type: ignore[misc] # neat-pyth
             return
         _log.info(
             "%d species of at least %d members exceed the population size of %d; "
-            "using elitism = 1 and min_species_size = 1 in this turn",
+            "using elitism = %d and min_species_size = 1 in this turn",
             species,
             max(rules.elitism, rules.min_species_size),
             self.places,
+            min(rules.elitism, 1),
         )
         rules.elitism = min(rules.elitism, 1)
         rules.min_species_size = 1
