@@ -50,7 +50,9 @@ def _listed(section: Section | None, counted: str) -> Iterator[Section]:
         return
     declared, found = section.whole(counted, 0), section.count("FRegion")
     if declared != found:
-        raise InputError(f"{declared}, but the section has {found} FRegion", key=section.at(counted))
+        raise InputError(
+            f"found {declared}, expected {found}, the number of FRegion", key=section.at(counted)
+        )
     yield from section.all("FRegion")
 
 

@@ -202,8 +202,7 @@ def _palette(materials: Mapping[int, PaletteMaterial], largest: int) -> Iterator
     """Yield the materials at the positions of their codes, up to the last one that the format can express."""
     if largest > _LARGEST_CODE:
         raise InputError(
-            f"found material {largest}, expected at most {_LARGEST_CODE}, the last with a character in VXA files",
-            key=MORPHOLOGY,
+            f"found material {largest}, expected at most {_LARGEST_CODE} in a VXA file", key=MORPHOLOGY
         )
     last = max(code for code in materials if code <= _LARGEST_CODE)
     for code in range(1, last + 1):
