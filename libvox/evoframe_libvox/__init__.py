@@ -174,7 +174,7 @@ class Settings:
         collision_horizon: Reach of the list of contact candidates, in voxel sizes; 1 to 4. The list is
             rebuilt when the fastest voxel may have moved by more than ``(horizon - 1) / 2`` lattice edges.
         collision_list_factor: The list excludes voxels within ``floor(factor * horizon)`` bonds of each
-            other; the original engine's list also excludes those beyond ``factor * horizon`` lattice edges; 1 to 2.
+            other, and the original engine's list those beyond ``factor * horizon`` lattice edges; 1 to 2.
         step_limit: Maximum number of steps of a body.
         largest_strain: Absolute strain of a bond beyond which a body has diverged.
         largest_distance: Distance of a voxel from its start, in longest edges of the canvas, beyond which a
