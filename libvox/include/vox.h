@@ -7,7 +7,7 @@
  * for its bounding box: about 600 bytes per cell, 1000 if its materials differ, and more for
  * contacts. A model keeps the memory of up to eight bodies for later calls.
  *
- * Units: metre, second, kilogram, pascal, degree; phases in cycles. Arrays over cells have x
+ * Units: meter, second, kilogram, pascal, degree; phases in cycles. Arrays over cells have x
  * fastest, then y, then z, and a batch is body after body.
  *
  * This header is read by the C compiler and, without its directive lines, by cffi. For C++, include

@@ -71,7 +71,7 @@ IN_LOOP double sine(double x)
     return choose(odd, -sine, sine);
 }
 
-/* cos(x) with the same accuracy; rounding the sum is no worse than the rounding of x. */
+/* cos(x), as accurate as the rounding of x allows. */
 IN_LOOP double cosine(double x)
 {
     return sine(x + 1.5707963267948966);

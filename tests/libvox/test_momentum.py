@@ -1,9 +1,9 @@
 """Conservation and dissipation of momentum and energy, and their tracks.
 
 Forces are equal and opposite, so that a free body conserves linear momentum up to rounding if both ends of
-its bonds have equal damping (docs/physics.md, 12.7). A bond's moments balance its shear only at the length of a
-lattice edge (section 5: b2 L = 3 b3), so that angular momentum is conserved to second order in the
-deformation.
+its bonds have equal damping (docs/physics.md, 12.7). A bond's moments balance its shear only at the
+length of a lattice edge (section 5: b2 L = 3 b3), so that angular momentum is conserved to second order in
+the deformation.
 """
 
 import math
@@ -118,7 +118,7 @@ def test_angular_momentum_is_conserved_to_second_order(
         assert more / less == pytest.approx(100.0, rel=0.2)
 
 
-def test_a_chain_that_stretches_has_none(small_model: ModelMaker, follow: Follow) -> None:
+def test_a_stretching_chain_has_no_angular_momentum(small_model: ModelMaker, follow: Follow) -> None:
     """No torque acts on it; exact up to rounding."""
     model = small_model((6, 1, 1), **UNDAMPED, **KICKED)
     tracks = follow(model, 3, [0.1, -0.2, 0.25, 0.0, 0.05, -0.1])

@@ -116,7 +116,7 @@ def test_absurd_forces_lead_to_divergence(
 def test_the_other_bodies_in_a_batch_are_not_affected(
     small_model: ModelMaker, material: MaterialMaker
 ) -> None:
-    """The bond of a heavy body breaks; the light bodies before and after it move as if alone."""
+    """The bond of a heavy body breaks; the light bodies before and after it move like bodies alone."""
     palette = {1: material(), 2: material(density=1e8), 3: material(youngs_modulus=5e8, density=1e8)}
     options = {"fixed": [FIX_ALL, 0, 0], "gravity": -9.81, "largest_strain": 0.5, "duration": 0.5}
     model = small_model((3, 1, 1), palette=palette, **options)

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from evoframe import InputError
 
-__all__ = ["naming"]
+__all__ = ["naming_source"]
 
 
 @contextmanager
-def naming(path: Path) -> Iterator[None]:
+def naming_source(path: Path) -> Iterator[None]:
     """Name *path* as the source of input errors raised in the block.
 
     Raises:

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from evoframe import InputError
-from evoframe_simulators.files import naming
+from evoframe_simulators.files import naming_source
 
 PATH = Path("some/body.vxa")
 
 
 def test_an_error_gets_the_file_as_its_source() -> None:
-    with pytest.raises(InputError) as caught, naming(PATH):
+    with pytest.raises(InputError) as caught, naming_source(PATH):
         raise InputError("has no voxels", key="VXC/Structure")
     assert caught.value.source == str(PATH)
     assert caught.value.key == "VXC/Structure"
@@ -25,7 +25,7 @@ def test_an_error_gets_the_file_as_its_source() -> None:
     [(FileNotFoundError(2, "No such file"), "No such file"), (OSError("odd"), "odd")],
 )
 def test_a_file_that_cannot_be_read_is_named(error: OSError, message: str) -> None:
-    with pytest.raises(InputError) as caught, naming(PATH):
+    with pytest.raises(InputError) as caught, naming_source(PATH):
         raise error
     assert caught.value.source == str(PATH)
     assert caught.value.problem.endswith(f": {message}")
@@ -33,10 +33,10 @@ def test_a_file_that_cannot_be_read_is_named(error: OSError, message: str) -> No
 
 
 def test_other_exceptions_are_not_changed() -> None:
-    with pytest.raises(ValueError, match=r"^internal$"), naming(PATH):
+    with pytest.raises(ValueError, match=r"^internal$"), naming_source(PATH):
         raise ValueError("internal")
 
 
 def test_a_block_without_errors_raises_nothing() -> None:
-    with naming(PATH):
+    with naming_source(PATH):
         pass

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import CONTROLLER, EMPTY, MORPHOLOGY, Design, InputError
-from evoframe_simulators.files import naming
+from evoframe_simulators.files import naming_source
 from evoframe_simulators.npz import PackedArray, open_npz
 from evoframe_simulators.vox.limits import MOST_CELLS, MOST_CYCLES
-from evoframe_simulators.vox.materials import PaletteMaterial, described
+from evoframe_simulators.vox.materials import PaletteMaterial, describe_codes
 
 __all__ = ["check_codes", "check_cycles", "check_design", "read_bodies"]
 
@@ -45,7 +45,7 @@ def check_codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]
     """
     wrong = material[~np.isin(material, (EMPTY, *materials))]
     if wrong.size:
-        raise InputError(f"unknown code {wrong[0]}; codes: {described(materials)}", key="material")
+        raise InputError(f"unknown code {wrong[0]}; codes: {describe_codes(materials)}", key="material")
 
 
 def check_cycles(cycles: NDArray[np.float64], name: str) -> None:
@@ -73,7 +73,7 @@ def read_bodies(
     Raises:
         InputError: The file cannot be read, or the array named by ``key`` does not contain bodies.
     """
-    with naming(path), open_npz(path, ("material", "phase_cycles")) as (material, phase):
+    with naming_source(path), open_npz(path, ("material", "phase_cycles")) as (material, phase):
         _check_headers(material, phase)
         codes = material.unpack()
         check_codes(codes, materials)

@@ -13,7 +13,7 @@ import evoframe_libvox as libvox
 from evoframe import EMPTY
 from evoframe_simulators.vox.limits import LARGEST_CODE, VALID_PROPERTY, check_printable
 
-__all__ = ["PaletteMaterial", "check_palette", "described", "single", "solver_palette"]
+__all__ = ["PaletteMaterial", "check_palette", "describe_codes", "round_to_single", "solver_palette"]
 
 
 @attrs.frozen
@@ -54,7 +54,7 @@ def check_palette(_: Any, __: Any, palette: Sequence[PaletteMaterial]) -> None:
             raise ValueError(f"expected one material for each code, found {codes.count(code)} with {code}")
 
 
-def described(materials: Mapping[int, PaletteMaterial]) -> str:
+def describe_codes(materials: Mapping[int, PaletteMaterial]) -> str:
     """Return a list of the valid codes for messages: ``0 empty, 1 passive, 3 contractile``."""
     named = {code: f" {material.name}" if material.name else "" for code, material in materials.items()}
     return ", ".join(f"{code}{name}" for code, name in sorted({EMPTY: " empty", **named}.items()))
@@ -75,7 +75,7 @@ def solver_palette(materials: Mapping[int, PaletteMaterial]) -> dict[int, libvox
     }
 
 
-def single(value: float) -> float:
+def round_to_single(value: float) -> float:
     """Round a number to single precision, as the engine does for some (docs/physics.md, section 1)."""
     with np.errstate(over="ignore"):  # becomes infinite, which the solver rejects
         return float(np.float32(value))

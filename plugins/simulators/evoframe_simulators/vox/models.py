@@ -22,8 +22,8 @@ __all__ = [
     "clocks_of",
     "model_of",
     "possible_clocks",
+    "strip_body_index",
     "time_step_of",
-    "without_number",
 ]
 
 _UNLIMITED = 2**63 - 1
@@ -108,7 +108,7 @@ def possible_clocks(settings: VoxSettings) -> list[Clock]:
     try:
         clocks = clocks_of(settings, free, bodies)
     except ValueError as error:
-        raise ValueError(without_number(error)) from error
+        raise ValueError(strip_body_index(error)) from error
     fewest = min(clock.steps for clock in clocks[: len(bars)])
     if fewest > settings.step_limit:
         raise ValueError(
@@ -118,7 +118,7 @@ def possible_clocks(settings: VoxSettings) -> list[Clock]:
     return clocks
 
 
-def without_number(error: Exception) -> str:
+def strip_body_index(error: Exception) -> str:
     """Return the solver's message without the index of the body, which is valid only within its batch."""
     return str(error).partition(" (body ")[0]
 

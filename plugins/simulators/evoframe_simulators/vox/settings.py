@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from evoframe import CONTRACTILE, CONTROLLER, PASSIVE, Design
 from evoframe_simulators.vox.limits import MOST_STEPS, VALID_PROPERTY, VALID_SETTING
-from evoframe_simulators.vox.materials import PaletteMaterial, check_palette, single
+from evoframe_simulators.vox.materials import PaletteMaterial, check_palette, round_to_single
 from evoframe_simulators.vox.regions import FixedRegion
 
 __all__ = ["VoxSettings", "amplitude_of", "materials_of", "period_of", "phase_cycles"]
@@ -135,9 +135,9 @@ def amplitude_of(settings: VoxSettings) -> float:
     The engine holds it in single precision (docs/physics.md, section 1); double precision would change
     results by 4e-11 m.
     """
-    return single(settings.temperature_amplitude - settings.temperature_base)
+    return round_to_single(settings.temperature_amplitude - settings.temperature_base)
 
 
 def period_of(settings: VoxSettings) -> float:
     """Return the period of the temperature oscillation, s, in single precision like the engine."""
-    return single(1 / settings.frequency)
+    return round_to_single(1 / settings.frequency)

@@ -9,9 +9,9 @@ import numpy as np
 
 from evoframe import MORPHOLOGY, Design, InputError, Outcome, Record
 from evoframe_simulators.vox.bodies import check_codes, check_design
-from evoframe_simulators.vox.models import Canvas, clock_of, model_of, without_number
+from evoframe_simulators.vox.models import Canvas, clock_of, model_of, strip_body_index
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
-from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_room, shape_of
+from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_size, shape_of
 
 __all__ = ["simulate"]
 
@@ -39,7 +39,7 @@ def simulate(settings: VoxSettings, designs: Sequence[Design], record: Record) -
         except ValueError as error:  # the solver rejects the values of cells
             for design in group.values():  # its message does not contain the unknown code
                 check_codes(design.roles[MORPHOLOGY], materials_of(settings))
-            raise InputError(without_number(error)) from error
+            raise InputError(strip_body_index(error)) from error
     return [outcomes[index] for index in range(len(designs))]
 
 
@@ -52,7 +52,7 @@ def _on_canvas(
     tracks = tuple(track for track in (*POINTS, *FURTHER) if track in record.tracks)
     outcomes: dict[int, Outcome] = {}
     for count in {len(taken) for taken in samples.values()}:
-        check_room(tracks, canvas, count)
+        check_size(tracks, canvas, count)
         chosen = {index: clock for index, clock in clocks.items() if len(samples[clock]) == count}
         result = model_of(settings, canvas).simulate(
             np.stack([designs[index].roles[MORPHOLOGY] for index in chosen]),

@@ -25,10 +25,10 @@ from evoframe import (
     Record,
     Variant,
 )
-from evoframe_simulators.files import naming
+from evoframe_simulators.files import naming_source
 from evoframe_simulators.vox.bodies import check_codes, check_design, read_bodies
 from evoframe_simulators.vox.geometry import geometry_of
-from evoframe_simulators.vox.models import acting_codes, model_of, possible_clocks, without_number
+from evoframe_simulators.vox.models import acting_codes, model_of, possible_clocks, strip_body_index
 from evoframe_simulators.vox.published import published_bodies
 from evoframe_simulators.vox.sampling import check_samples
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
@@ -100,7 +100,7 @@ class Vox(VoxSettings):
         try:
             return [Variant(*change) for change in changes(self, design, record)]
         except ValueError as error:  # the solver rejects the values of cells
-            raise InputError(without_number(error)) from error
+            raise InputError(strip_body_index(error)) from error
 
     def geometry(self, design: Design, frames: int) -> Geometry:
         """Return the surfaces of a body for drawing (see :mod:`.geometry`).
@@ -144,7 +144,7 @@ class Vox(VoxSettings):
         materials = materials_of(self)
         if path.suffix.lower() == ".vxa":
             file = read_vxa(path)
-            with naming(path):
+            with naming_source(path):
                 check_codes(file.material, materials)
             return [(path.name, Design({MORPHOLOGY: file.material, CONTROLLER: file.phase}))]
         if path.suffix.lower() != ".npz":
@@ -165,7 +165,7 @@ class Vox(VoxSettings):
         if path.suffix.lower() != ".vxa":
             return None
         file = read_vxa(path)
-        with naming(path):
+        with naming_source(path):
             settings = file.settings()
         # TOML has lists instead of tuples.
         return attrs.asdict(

@@ -9,7 +9,7 @@ import evoframe_libvox as libvox
 from evoframe import ConfigurationError, InputError
 from evoframe_simulators.vox.limits import MOST_RECORD_BYTES
 
-__all__ = ["FURTHER", "POINTS", "check_room", "check_tracks", "shape_of"]
+__all__ = ["FURTHER", "POINTS", "check_size", "check_tracks", "shape_of"]
 
 POINTS: tuple[libvox.Track, ...] = ("tip", "face", "body")
 """Positions ``float64[samples, 3]``, m: of the last voxel in cell order, and the mass-weighted means of the
@@ -42,7 +42,7 @@ def check_tracks(tracks: Iterable[str]) -> None:
             )
 
 
-def check_room(tracks: Iterable[str], canvas: tuple[int, ...], samples: int) -> None:
+def check_size(tracks: Iterable[str], canvas: tuple[int, ...], samples: int) -> None:
     """Reject a record that exceeds the memory of most machines, before it is allocated.
 
     Raises:

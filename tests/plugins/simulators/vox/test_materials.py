@@ -12,7 +12,7 @@ from bars import soft
 from hypothesis import given, strategies as st
 
 from evoframe_simulators import Vox
-from evoframe_simulators.vox.materials import described, single, solver_palette
+from evoframe_simulators.vox.materials import describe_codes, round_to_single, solver_palette
 from evoframe_simulators.vox.settings import VoxSettings, materials_of
 
 
@@ -44,9 +44,9 @@ def test_the_error_for_a_value_out_of_range_names_option_and_value(
 
 
 def test_codes_are_listed_in_ascending_order_with_their_names() -> None:
-    assert described(materials_of(VoxSettings())) == "0 empty, 1 passive, 3 contractile"
-    assert described({9: soft(9), 2: soft(2, name="gel")}) == "0 empty, 2 gel, 9"
-    assert described({}) == "0 empty"
+    assert describe_codes(materials_of(VoxSettings())) == "0 empty, 1 passive, 3 contractile"
+    assert describe_codes({9: soft(9), 2: soft(2, name="gel")}) == "0 empty, 2 gel, 9"
+    assert describe_codes({}) == "0 empty"
 
 
 def test_the_solver_is_given_every_value() -> None:
@@ -58,11 +58,11 @@ def test_the_solver_is_given_every_value() -> None:
 
 @given(st.floats(allow_nan=False))
 def test_single_precision_rounds_once(value: float) -> None:
-    rounded = single(value)
-    assert single(rounded) == rounded
+    rounded = round_to_single(value)
+    assert round_to_single(rounded) == rounded
     if abs(value) < 1e38:
         assert abs(rounded - value) <= np.spacing(np.float32(abs(rounded))) / 2
 
 
 def test_numbers_beyond_single_precision_become_infinite() -> None:
-    assert single(1e300) == np.inf
+    assert round_to_single(1e300) == np.inf

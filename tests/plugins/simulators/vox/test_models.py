@@ -16,8 +16,8 @@ from evoframe_simulators.vox.models import (
     clocks_of,
     model_of,
     possible_clocks,
+    strip_body_index,
     time_step_of,
-    without_number,
 )
 
 BAR = bar(1, 3, 3).roles["morphology"]
@@ -90,4 +90,4 @@ def test_the_error_for_unusable_time_steps_contains_no_index_of_a_body() -> None
 def test_the_index_of_a_body_is_removed_from_errors() -> None:
     with pytest.raises(ValueError, match=r"\(body 0\)$") as caught:
         clock_of(VoxSettings(), np.full((2, 1, 1), 9, np.uint8))
-    assert without_number(caught.value) == str(caught.value).removesuffix(" (body 0)")
+    assert strip_body_index(caught.value) == str(caught.value).removesuffix(" (body 0)")

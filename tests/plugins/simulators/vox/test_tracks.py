@@ -12,7 +12,7 @@ from hypothesis import given, strategies as st
 from evoframe import ConfigurationError, InputError, Record
 from evoframe_simulators import Vox
 from evoframe_simulators.vox.limits import MOST_RECORD_BYTES
-from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_room, shape_of
+from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_size, shape_of
 
 
 class TestTracks:
@@ -66,6 +66,6 @@ def test_the_largest_record_is_accepted_and_one_more_sample_is_rejected(
 ) -> None:
     sample = sum(8 * math.prod(shape_of(track, canvas)) for track in tracks)
     most = MOST_RECORD_BYTES // sample
-    check_room(tracks, canvas, most)
+    check_size(tracks, canvas, most)
     with pytest.raises(InputError, match=f"^{most + 1} samples .* 4 GiB;"):
-        check_room(tracks, canvas, most + 1)
+        check_size(tracks, canvas, most + 1)

@@ -7,25 +7,25 @@ from collections.abc import Collection, Mapping
 
 from lxml import etree
 
-from evoframe_simulators.vox.vxa.document import shown
+from evoframe_simulators.vox.vxa.document import shorten
 from evoframe_simulators.vox.vxa.schema import VXA, Role, Schema
-from evoframe_simulators.vox.vxa.sections import Refusals, Section, number_in
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported, parse_number
 
-__all__ = ["refuse_the_unknown"]
+__all__ = ["collect_unsupported"]
 
 _OFF_WORDS = ("", "false")
 _MATERIAL = "VXC/Palette/Material"
 
 
-def refuse_the_unknown(
-    section: Section, used: Collection[int], refusals: Refusals, schema: Schema = VXA
+def collect_unsupported(
+    section: Section, used: Collection[int], unsupported: Unsupported, schema: Schema = VXA
 ) -> None:
     """Collect all tags of a file that enable features that vox does not simulate (see :mod:`.vxa.schema`).
 
     Args:
         section: The file, or a section of it.
         used: Positions in the palette, from 1, of the materials in the body; others are not checked.
-        refusals: Collects the tags; materials and regions are numbered.
+        unsupported: Collects the tags; materials and regions are numbered.
         schema: Schema of the section.
     """
     seen: Counter[str] = Counter()
@@ -39,10 +39,10 @@ def refuse_the_unknown(
             place = f"{place} {seen[tag]}"
         role = schema.get(tag)
         if isinstance(role, Mapping):
-            refuse_the_unknown(Section(element, place), used, refusals, role)
+            collect_unsupported(Section(element, place), used, unsupported, role)
         elif not _is_accepted(element, role):
-            value = shown(" ".join(str(text) for text in element.itertext()))
-            refusals.add(place, value, "unknown tag" if role is None else "")
+            value = shorten(" ".join(str(text) for text in element.itertext()))
+            unsupported.add(place, value, "unknown tag" if role is None else "")
 
 
 def _is_accepted(element: etree._Element, role: Role | float | None) -> bool:
@@ -50,13 +50,13 @@ def _is_accepted(element: etree._Element, role: Role | float | None) -> bool:
     if role is None:
         return _is_off(element)
     if isinstance(role, Role):
-        return role is not Role.REFUSED
+        return role is not Role.UNSUPPORTED
     text = (element.text or "").strip()
-    is_the_number = not text or number_in(text) == role or (role == 0.0 and _is_off(element))
+    is_the_number = not text or parse_number(text) == role or (role == 0.0 and _is_off(element))
     return is_the_number and not len(element)
 
 
 def _is_off(element: etree._Element) -> bool:
     """Return whether all texts in an element are empty, zero or ``false``."""
     texts = (str(text).strip().lower() for text in element.itertext())
-    return all(text in _OFF_WORDS or number_in(text) == 0.0 for text in texts)
+    return all(text in _OFF_WORDS or parse_number(text) == 0.0 for text in texts)

@@ -8,14 +8,14 @@ from lxml import etree
 
 from evoframe import InputError
 
-__all__ = ["parsed", "shown"]
+__all__ = ["parse_xml", "shorten"]
 
 _MOST_BYTES = 64 * 2**20
 _MOST_ELEMENTS = 2**20  # the parser requires at least a hundred bytes for each, however short it is
 _LONGEST_SHOWN = 60
 
 
-def parsed(path: Path) -> etree._Element:
+def parse_xml(path: Path) -> etree._Element:
     """Return the root of an XML file.
 
     The text is decoded as UTF-8, or as ISO-8859-1 if that fails; the declared encoding is ignored.
@@ -38,10 +38,10 @@ def parsed(path: Path) -> etree._Element:
     try:
         return etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
-        raise InputError(f"is not XML: {shown(error.msg or 'unknown error', quoted=False)}") from error
+        raise InputError(f"is not XML: {shorten(error.msg or 'unknown error', quoted=False)}") from error
 
 
-def shown(text: str, *, quoted: bool = True) -> str:
+def shorten(text: str, *, quoted: bool = True) -> str:
     """Return a text from a file, shortened and printable, for a message."""
     line = " ".join(text.split())
     printable = "".join(char if char.isprintable() else "?" for char in line[: 2 * _LONGEST_SHOWN])

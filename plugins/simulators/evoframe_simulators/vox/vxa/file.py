@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import InputError
-from evoframe_simulators.vox.models import possible_clocks, time_step_of, without_number
+from evoframe_simulators.vox.models import possible_clocks, strip_body_index, time_step_of
 from evoframe_simulators.vox.settings import VoxSettings
 
 __all__ = ["FIRST_CHARACTER", "SHAPES", "VxaFile"]
@@ -57,5 +57,5 @@ class VxaFile:
                 settings = attrs.evolve(settings, duration=duration)
             possible_clocks(settings)
         except ValueError as error:
-            raise InputError(without_number(error)) from error
+            raise InputError(strip_body_index(error)) from error
         return settings

@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 
 from evoframe import InputError
-from evoframe_simulators.files import naming
-from evoframe_simulators.vox.materials import PaletteMaterial, single
-from evoframe_simulators.vox.vxa.boxes import regions_in
+from evoframe_simulators.files import naming_source
+from evoframe_simulators.vox.materials import PaletteMaterial, round_to_single
+from evoframe_simulators.vox.vxa.boxes import read_regions
 from evoframe_simulators.vox.vxa.cells import Lattice
-from evoframe_simulators.vox.vxa.checking import refuse_the_unknown
-from evoframe_simulators.vox.vxa.document import parsed, shown
+from evoframe_simulators.vox.vxa.checking import collect_unsupported
+from evoframe_simulators.vox.vxa.document import parse_xml, shorten
 from evoframe_simulators.vox.vxa.file import VxaFile
-from evoframe_simulators.vox.vxa.sections import Refusals, Section
-from evoframe_simulators.vox.vxa.structure import canvas_in, material_in, phase_in
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported
+from evoframe_simulators.vox.vxa.structure import read_canvas, read_material, read_phase
 
 __all__ = ["read_vxa"]
 
@@ -43,43 +43,43 @@ def read_vxa(path: Path) -> VxaFile:
     Raises:
         InputError: The file cannot be read, is not a VXA file, or uses features that vox does not simulate.
     """
-    with naming(path):
-        element = parsed(path)
+    with naming_source(path):
+        element = parse_xml(path)
         if element.tag != "VXA":
-            raise InputError(f"is not a VXA file: found root tag {shown(str(element.tag))}, expected 'VXA'")
-        root, refusals = Section(element, ""), Refusals()
+            raise InputError(f"is not a VXA file: found root tag {shorten(str(element.tag))}, expected 'VXA'")
+        root, unsupported = Section(element, ""), Unsupported()
         simulator, environment, vxc = (root.need(tag) for tag in ("Simulator", "Environment", "VXC"))
         structure, palette = vxc.need("Structure"), vxc.need("Palette")
-        _check_encoding(vxc, structure, refusals)
-        lattice = Lattice(canvas_in(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
-        material = material_in(structure, lattice.canvas, palette.count("Material"))
+        _check_encoding(vxc, structure, unsupported)
+        lattice = Lattice(read_canvas(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
+        material = read_material(structure, lattice.canvas, palette.count("Material"))
         used = np.unique(material[material > 0]).tolist()
-        refuse_the_unknown(root, used, refusals)
-        stop, steps = _stop(simulator, environment, refusals)
+        collect_unsupported(root, used, unsupported)
+        stop, steps = _stop(simulator, environment, unsupported)
         options = {
             "voxel_size": lattice.edge,
-            "fixed": regions_in(environment, lattice, refusals),
+            "fixed": read_regions(environment, lattice, unsupported),
             **_integration(simulator),
-            **_collisions(simulator, refusals),
+            **_collisions(simulator, unsupported),
             **stop,
             **_surroundings(environment),
-            **_thermal(environment, refusals),
+            **_thermal(environment, unsupported),
         }
-        refusals.check()
+        unsupported.check()
         numbered = enumerate(palette.all("Material"), 1)
         options["palette"] = tuple(_material(found, code) for code, found in numbered if code in used)
-        return VxaFile(options, material, phase_in(structure, lattice.canvas), steps)
+        return VxaFile(options, material, read_phase(structure, lattice.canvas), steps)
 
 
-def _check_encoding(vxc: Section, structure: Section, refusals: Refusals) -> None:
+def _check_encoding(vxc: Section, structure: Section, unsupported: Unsupported) -> None:
     """Reject a structure in an unknown encoding before it is decoded."""
     compression = str(structure.element.get("Compression", ""))
     if compression != "ASCII_READABLE":
-        refusals.add(f"{structure.place} Compression", shown(compression), "expected ASCII_READABLE")
+        unsupported.add(f"{structure.place} Compression", shorten(compression), "expected ASCII_READABLE")
     version = str(vxc.element.get("Version", ""))
     if version not in _VERSIONS:
-        refusals.add(f"{vxc.place} Version", shown(version), "expected 0.93 or 0.94")
-    refusals.check()
+        unsupported.add(f"{vxc.place} Version", shorten(version), "expected 0.93 or 0.94")
+    unsupported.check()
 
 
 def _integration(simulator: Section) -> dict[str, Any]:
@@ -92,23 +92,25 @@ def _integration(simulator: Section) -> dict[str, Any]:
     }
 
 
-def _collisions(simulator: Section, refusals: Refusals) -> dict[str, Any]:
+def _collisions(simulator: Section, unsupported: Unsupported) -> dict[str, Any]:
     section = simulator.find("Collisions")
     if section is None or not section.flag("SelfColEnabled"):
         return {"self_collision": False}
     system = section.whole("ColSystem", 3, most=3)
     if system not in _HORIZON_SYSTEMS:
-        refusals.add(section.at("ColSystem"), shown(str(system)), "expected 3")
+        unsupported.add(section.at("ColSystem"), shorten(str(system)), "expected 3")
     return {"self_collision": True, "collision_horizon": section.number("CollisionHorizon", 2.0, least=1.0)}
 
 
-def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple[dict[str, Any], int | None]:
+def _stop(
+    simulator: Section, environment: Section, unsupported: Unsupported
+) -> tuple[dict[str, Any], int | None]:
     """Return start and duration as options, and the number of steps if the file sets that instead."""
     section = simulator.need("StopCondition")
     start = section.number("InitCmTime", 0.0, least=0.0)
     if section.number("ActuationStartTime", 0.0, least=0.0) > start:
         late = section.text("ActuationStartTime") or ""
-        refusals.add(section.at("ActuationStartTime"), shown(late), "later than InitCmTime")
+        unsupported.add(section.at("ActuationStartTime"), shorten(late), "later than InitCmTime")
     kind = section.whole("StopConditionType", 0, most=6)
     if kind == 1:  # the engine rounds the number and makes one step more
         counted = section.number("StopConditionValue", 0.0, least=0.0)
@@ -120,11 +122,11 @@ def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple
         return {"start_time": start}, math.floor(counted + 0.5) + 1
     if kind not in _DURATIONS:
         why = "expected a number of steps (1), a time (2) or temperature periods (3)"
-        refusals.add(section.at("StopConditionType"), shown(str(kind)), why)
+        unsupported.add(section.at("StopConditionType"), shorten(str(kind)), why)
         return {}, None
     duration = section.number("StopConditionValue", 0.0, above=0.0)
     if kind == _PERIODS:
-        duration *= single(environment.need("Thermal").number("TempPeriod", 0.1, above=0.0))
+        duration *= round_to_single(environment.need("Thermal").number("TempPeriod", 0.1, above=0.0))
     return {"start_time": start, "duration": duration}, None
 
 
@@ -141,7 +143,7 @@ def _surroundings(environment: Section) -> dict[str, Any]:
     return options
 
 
-def _thermal(environment: Section, refusals: Refusals) -> dict[str, Any]:
+def _thermal(environment: Section, unsupported: Unsupported) -> dict[str, Any]:
     """Return the temperature options; without actuation the amplitude equals the base."""
     section = environment.need("Thermal")
     base = section.number("TempBase", 25.0)
@@ -150,12 +152,12 @@ def _thermal(environment: Section, refusals: Refusals) -> dict[str, Any]:
     else:
         swing = section.number("TempAmplitude", 0.0)
         # The engine holds the swing in single precision. If adding the base would round it, drop the base.
-        base = base if single(base + swing - base) == single(swing) else 0.0
+        base = base if round_to_single(base + swing - base) == round_to_single(swing) else 0.0
         highest = base + swing
     if not section.flag("TempEnabled") or highest == base:
         return {"temperature_base": base, "temperature_amplitude": base}
     if not section.flag("VaryTempEnabled"):
-        refusals.add(section.at("VaryTempEnabled"), "'0'", "constant temperature with TempEnabled = 1")
+        unsupported.add(section.at("VaryTempEnabled"), "'0'", "constant temperature with TempEnabled = 1")
     period = section.number("TempPeriod", 0.1, above=0.0)
     return {"temperature_base": base, "temperature_amplitude": highest, "frequency": 1.0 / period}
 

@@ -34,7 +34,7 @@ class Role(enum.Enum):
     IDLE = enum.auto()
     """The value has no effect on the simulation: a name, a color, a file, a detail of a disabled feature."""
 
-    REFUSED = enum.auto()
+    UNSUPPORTED = enum.auto()
     """The tag enables a feature that vox does not simulate, whatever its value."""
 
 
@@ -43,7 +43,7 @@ Schema: TypeAlias = Mapping[str, "Schema | Role | float"]
 
 READ: Final = Role.READ
 IDLE: Final = Role.IDLE
-REFUSED: Final = Role.REFUSED
+UNSUPPORTED: Final = Role.UNSUPPORTED
 OFF: Final = 0.0
 
 MATERIAL: Final[Schema] = {
@@ -183,8 +183,8 @@ _ENVIRONMENT: Final[Schema] = {
     "ExpandOnly": OFF,
     "FallingProhibited": OFF,  # ends the simulation when a body falls over
     "DampEvolvedStiffness": IDLE,
-    "Sources": REFUSED,
-    "FloorRadius": REFUSED,
+    "Sources": UNSUPPORTED,
+    "FloorRadius": UNSUPPORTED,
 }
 
 _STRUCTURE: Final[Schema] = {
@@ -193,10 +193,11 @@ _STRUCTURE: Final[Schema] = {
     "PhaseOffset": {"Layer": READ},
     **{f"num{network}Synapses": OFF for network in ("RegenerationModel", "ForwardModel", "Controller")},
     **{
-        f"{network}SynapseWeights": REFUSED for network in ("RegenerationModel", "ForwardModel", "Controller")
+        f"{network}SynapseWeights": UNSUPPORTED
+        for network in ("RegenerationModel", "ForwardModel", "Controller")
     },
-    **dict.fromkeys(("FinalPhaseOffset", "InitialVoxelSize", "FinalVoxelSize"), REFUSED),
-    **dict.fromkeys(("Stiffness", "StressAdaptationRate", "PressureAdaptationRate"), REFUSED),
+    **dict.fromkeys(("FinalPhaseOffset", "InitialVoxelSize", "FinalVoxelSize"), UNSUPPORTED),
+    **dict.fromkeys(("Stiffness", "StressAdaptationRate", "PressureAdaptationRate"), UNSUPPORTED),
     **dict.fromkeys(("VestibularContribution", "StressContribution", "PressureContribution"), IDLE),
     **{f"PreDamage{what}": IDLE for what in ("Roll", "Pitch", "Yaw", "Stress", "Pressure")},
 }

@@ -10,14 +10,14 @@ import attrs
 from lxml import etree
 
 from evoframe import InputError
-from evoframe_simulators.vox.vxa.document import shown
+from evoframe_simulators.vox.vxa.document import shorten
 
-__all__ = ["Refusals", "Section", "number_in"]
+__all__ = ["Section", "Unsupported", "parse_number"]
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
-def number_in(text: str) -> float | None:
+def parse_number(text: str) -> float | None:
     """Parse a finite decimal number; return ``None`` for any other text."""
     if not _NUMBER.fullmatch(text):
         return None
@@ -26,7 +26,7 @@ def number_in(text: str) -> float | None:
 
 
 @attrs.frozen
-class Refusals:
+class Unsupported:
     """Features of a file that vox does not simulate, collected for one error."""
 
     _found: list[str] = attrs.field(factory=list)
@@ -42,7 +42,10 @@ class Refusals:
             InputError: Lists everything that was added.
         """
         if self._found:
-            raise InputError(f"vox does not simulate {'; '.join(self._found)}")
+            found = "; ".join(self._found)
+            raise InputError(
+                f"uses features that vox does not simulate (change or remove these tags): {found}"
+            )
 
 
 @attrs.frozen
@@ -114,11 +117,11 @@ class Section:
             InputError: The value is not a finite number, or is out of range.
         """
         text = self.text(tag)
-        value = default if text is None else number_in(text)
+        value = default if text is None else parse_number(text)
         if value is None or value < least or not value > above:
             bound = f" of at least {least:g}" if math.isfinite(least) else ""
             bound = f" above {above:g}" if math.isfinite(above) else bound
-            found = "nothing" if text is None else shown(text)
+            found = "nothing" if text is None else shorten(text)
             raise InputError(f"expected a number{bound}, found {found}", key=self.at(tag))
         return value
 
@@ -133,10 +136,10 @@ class Section:
             if default is None:
                 raise InputError(f"missing tag; expected an integer from {least} to {most}", key=self.at(tag))
             return default
-        value = number_in(text)
+        value = parse_number(text)
         if value is None or not value.is_integer() or not least <= value <= most:
             raise InputError(
-                f"expected an integer from {least} to {most}, found {shown(text)}", key=self.at(tag)
+                f"expected an integer from {least} to {most}, found {shorten(text)}", key=self.at(tag)
             )
         return int(value)
 

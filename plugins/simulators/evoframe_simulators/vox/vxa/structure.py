@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 from evoframe import InputError
 from evoframe_simulators.vox.bodies import check_cycles
 from evoframe_simulators.vox.limits import MOST_CELLS
-from evoframe_simulators.vox.vxa.document import shown
+from evoframe_simulators.vox.vxa.document import shorten
 from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
-from evoframe_simulators.vox.vxa.sections import Section, number_in
+from evoframe_simulators.vox.vxa.sections import Section, parse_number
 
-__all__ = ["canvas_in", "material_in", "phase_in"]
+__all__ = ["read_canvas", "read_material", "read_phase"]
 
 T = TypeVar("T", np.uint8, np.float64)
 
 
-def canvas_in(structure: Section) -> tuple[int, int, int]:
+def read_canvas(structure: Section) -> tuple[int, int, int]:
     """Return the number of cells along x, y and z.
 
     Raises:
@@ -35,7 +35,7 @@ def canvas_in(structure: Section) -> tuple[int, int, int]:
     return x, y, z
 
 
-def material_in(structure: Section, canvas: tuple[int, int, int], materials: int) -> NDArray[np.uint8]:
+def read_material(structure: Section, canvas: tuple[int, int, int], materials: int) -> NDArray[np.uint8]:
     """Return the materials of the cells, ``uint8[X, Y, Z]``.
 
     Args:
@@ -56,7 +56,7 @@ def material_in(structure: Section, canvas: tuple[int, int, int], materials: int
         wrong = np.flatnonzero((codes < 0) | (codes > materials))
         if wrong.size:
             raise InputError(
-                f"cell {shown(cells[wrong[0]])} has material {codes[wrong[0]]}, expected 0 (empty) to "
+                f"cell {shorten(cells[wrong[0]])} has material {codes[wrong[0]]}, expected 0 (empty) to "
                 f"{materials}, the number of materials in the palette",
                 key=layer.place,
             )
@@ -67,7 +67,7 @@ def material_in(structure: Section, canvas: tuple[int, int, int], materials: int
     return material
 
 
-def phase_in(structure: Section, canvas: tuple[int, int, int]) -> NDArray[np.float64]:
+def read_phase(structure: Section, canvas: tuple[int, int, int]) -> NDArray[np.float64]:
     """Return the phase offsets of the cells, ``float64[X, Y, Z]``; 0 everywhere if the section is missing.
 
     Raises:
@@ -84,9 +84,9 @@ def phase_in(structure: Section, canvas: tuple[int, int, int]) -> NDArray[np.flo
             raise InputError(f"found {cells} offsets, expected {canvas[0]} x {canvas[1]}", key=layer.place)
         row = np.empty(cells)
         for n, item in enumerate(items.split(",")):
-            offset = number_in(item.strip())
+            offset = parse_number(item.strip())
             if offset is None:
-                raise InputError(f"found offset {shown(item)}, expected a finite number", key=layer.place)
+                raise InputError(f"found offset {shorten(item)}, expected a finite number", key=layer.place)
             row[n] = offset
         rows.append(row)
     phase = _arranged(rows, canvas)

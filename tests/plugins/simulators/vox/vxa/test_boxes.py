@@ -12,9 +12,9 @@ from lxml import etree
 from evoframe import InputError
 from evoframe_simulators import FixedRegion, Vox
 from evoframe_simulators.vox.vxa import read_vxa
-from evoframe_simulators.vox.vxa.boxes import regions_in
+from evoframe_simulators.vox.vxa.boxes import read_regions
 from evoframe_simulators.vox.vxa.cells import Lattice
-from evoframe_simulators.vox.vxa.sections import Refusals, Section
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported
 
 Write = Callable[..., Path]
 
@@ -22,10 +22,10 @@ LATTICE = Lattice((4, 1, 1), 0.05)
 BOX = "<FRegion><PrimType>0</PrimType><dX>0.1</dX><dY>1</dY><dZ>1</dZ><DofFixed>{}</DofFixed></FRegion>"
 
 
-def found(text: str) -> tuple[tuple[FixedRegion, ...], Refusals]:
-    """Return the regions of an environment, and its refusals."""
-    refusals = Refusals()
-    return regions_in(Section(etree.fromstring(f"<E>{text}</E>"), "E"), LATTICE, refusals), refusals
+def found(text: str) -> tuple[tuple[FixedRegion, ...], Unsupported]:
+    """Return the regions of an environment, and its unsupported."""
+    unsupported = Unsupported()
+    return read_regions(Section(etree.fromstring(f"<E>{text}</E>"), "E"), LATTICE, unsupported), unsupported
 
 
 @pytest.mark.parametrize(
@@ -43,21 +43,21 @@ def test_each_section_of_regions_is_read_and_counted(section: str) -> None:
 
 def test_older_sections_add_up_and_clamp_with_a_flag() -> None:
     flag = BOX.replace("<DofFixed>{}</DofFixed>", "<Fixed>1</Fixed>")
-    regions, refusals = found(
+    regions, unsupported = found(
         f"<Fixed_Regions><NumFixed>1</NumFixed>{flag}</Fixed_Regions>"
         f"<Forced_Regions><NumForced>1</NumForced>{BOX.format(1)}</Forced_Regions>"
     )
     assert [len(region.degrees_of_freedom) for region in regions] == [6, 1]
-    refusals.check()
+    unsupported.check()
 
 
 def test_older_sections_beside_newer_ones_are_rejected() -> None:
-    _, refusals = found(
+    _, unsupported = found(
         f"<Boundary_Conditions><NumBCs>0</NumBCs></Boundary_Conditions>"
         f"<Fixed_Regions><NumFixed>1</NumFixed>{BOX.format(1)}</Fixed_Regions>"
     )
     with pytest.raises(InputError, match=r"E/Fixed_Regions = .*Boundary_Conditions\)$"):
-        refusals.check()
+        unsupported.check()
 
 
 @pytest.mark.parametrize(

@@ -12,24 +12,24 @@ from lxml import etree
 from evoframe import InputError
 from evoframe_simulators import Vox
 from evoframe_simulators.vox.vxa import read_vxa
-from evoframe_simulators.vox.vxa.checking import refuse_the_unknown
+from evoframe_simulators.vox.vxa.checking import collect_unsupported
 from evoframe_simulators.vox.vxa.schema import Role, Schema
-from evoframe_simulators.vox.vxa.sections import Refusals, Section
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported
 
 Write = Callable[..., Path]
 
-SCHEMA: Schema = {"Read": Role.READ, "Idle": Role.IDLE, "Refused": Role.REFUSED, "Off": 0.0, "One": 1.0}
+SCHEMA: Schema = {"Read": Role.READ, "Idle": Role.IDLE, "Refused": Role.UNSUPPORTED, "Off": 0.0, "One": 1.0}
 ON = {"Refused", "Off", "One", "Unknown"}
 
 
 def rejected(text: str, schema: Schema = SCHEMA) -> str:
     """Return the rejected tags of a section as text, empty if all are accepted."""
-    refusals = Refusals()
-    refuse_the_unknown(Section(etree.fromstring(f"<S>{text}</S>"), "S"), (), refusals, schema)
+    unsupported = Unsupported()
+    collect_unsupported(Section(etree.fromstring(f"<S>{text}</S>"), "S"), (), unsupported, schema)
     try:
-        refusals.check()
+        unsupported.check()
     except InputError as error:
-        return error.problem.removeprefix("vox does not simulate ")
+        return error.problem.partition("): ")[2]
     return ""
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, strategies as st
 
 from evoframe import InputError
 from evoframe_simulators.vox.vxa import document
-from evoframe_simulators.vox.vxa.document import parsed, shown
+from evoframe_simulators.vox.vxa.document import parse_xml, shorten
 
 
 @pytest.fixture
@@ -20,12 +20,12 @@ def path(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("encoding", ["utf-8", "iso-8859-1"])
 def test_the_declared_encoding_is_ignored(path: Path, encoding: str) -> None:
     path.write_bytes('<?xml version="1.0" encoding="utf-16"?><A>é</A>'.encode(encoding))
-    assert parsed(path).text == "é"
+    assert parse_xml(path).text == "é"
 
 
 def test_comments_and_instructions_are_removed(path: Path) -> None:
     path.write_text("<A><!-- 1 --><?b 2?><C/></A>")
-    assert [child.tag for child in parsed(path)] == ["C"]
+    assert [child.tag for child in parse_xml(path)] == ["C"]
 
 
 @pytest.mark.parametrize("text", ["<A b='1'/>" * 3, "<A><B></B><C/></A>", "<A b=\"1\" c='2' d=''/>"])
@@ -35,29 +35,29 @@ def test_the_number_of_elements_and_attributes_is_limited(
     path.write_text(f"<R>{text}</R>")
     most = max(text.count("</") + text.count("/>") + 1, (text.count("'") + text.count('"')) // 2)
     monkeypatch.setattr(document, "_MOST_ELEMENTS", most)
-    assert parsed(path).tag == "R"
+    assert parse_xml(path).tag == "R"
     monkeypatch.setattr(document, "_MOST_ELEMENTS", most - 1)
     with pytest.raises(InputError, match=f" {most - 1} elements"):
-        parsed(path)
+        parse_xml(path)
 
 
 def test_the_size_is_limited(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(document, "_MOST_BYTES", 2**20)
     path.write_bytes(b"<A/>".ljust(2**20))
-    assert parsed(path).tag == "A"
+    assert parse_xml(path).tag == "A"
     path.write_bytes(b"<A/>".ljust(2**20 + 1))
     with pytest.raises(InputError, match=r" 1 MiB$"):
-        parsed(path)
+        parse_xml(path)
 
 
 @given(text=st.text(), quoted=st.booleans())
 def test_a_shown_text_is_one_short_printable_line(text: str, quoted: bool) -> None:
-    line = shown(text, quoted=quoted)
+    line = shorten(text, quoted=quoted)
     assert line.isprintable()
     assert len(line) <= 2 * 60 + 3
     assert line.startswith("'") or not quoted
 
 
 def test_a_long_text_is_shown_with_dots() -> None:
-    assert shown("a" * 61) == f"'{'a' * 60}...'"
-    assert shown("a\n b\x07") == "'a b?'"
+    assert shorten("a" * 61) == f"'{'a' * 60}...'"
+    assert shorten("a\n b\x07") == "'a b?'"

@@ -288,7 +288,7 @@ class TestSettings:
         assert caught.value.source == str(tmp_path / "a.vxd")
 
 
-class TestRefusals:
+class TestErrors:
     """Errors for features that vox lacks, with tag and value."""
 
     @pytest.mark.parametrize(

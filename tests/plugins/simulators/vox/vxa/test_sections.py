@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from lxml import etree
 
 from evoframe import InputError
-from evoframe_simulators.vox.vxa.sections import Refusals, Section, number_in
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported, parse_number
 
 
 def section(text: str, place: str = "A/B") -> Section:
@@ -20,13 +20,13 @@ def section(text: str, place: str = "A/B") -> Section:
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_a_written_number_is_read_exactly(value: float) -> None:
-    assert number_in(repr(value)) == value
+    assert parse_number(repr(value)) == value
     assert section(f"<X> {value!r}\n</X>").number("X", 0.0) == value
 
 
 @given(st.text(max_size=8))
 def test_other_texts_are_not_numbers(text: str) -> None:
-    found = number_in(text)
+    found = parse_number(text)
     assert found is None or (math.isfinite(found) and re.fullmatch(r"[-+0-9.eE]+", text))
 
 
@@ -34,7 +34,7 @@ def test_other_texts_are_not_numbers(text: str) -> None:
     "text", ["", "nan", "inf", "1e999", "0x1", "1_0", "1,5", "٣", "1 2", "--1", "e3", "."]
 )
 def test_numbers_of_python_but_not_of_the_engine_are_rejected(text: str) -> None:
-    assert number_in(text) is None
+    assert parse_number(text) is None
 
 
 @pytest.mark.parametrize(
@@ -91,10 +91,10 @@ def test_sections_know_their_place() -> None:
     assert caught.value.key == "X/W"
 
 
-def test_refusals_make_one_error() -> None:
-    refusals = Refusals()
-    refusals.check()
-    refusals.add("A", "'1'")
-    refusals.add("B", "'2'", "why")
+def test_unsupported_features_make_one_error() -> None:
+    unsupported = Unsupported()
+    unsupported.check()
+    unsupported.add("A", "'1'")
+    unsupported.add("B", "'2'", "why")
     with pytest.raises(InputError, match=r" A = '1'; B = '2' \(why\)$"):
-        refusals.check()
+        unsupported.check()

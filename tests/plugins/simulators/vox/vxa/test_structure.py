@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from evoframe import InputError
 from evoframe_simulators.vox.vxa.sections import Section
-from evoframe_simulators.vox.vxa.structure import canvas_in, material_in, phase_in
+from evoframe_simulators.vox.vxa.structure import read_canvas, read_material, read_phase
 
 canvases = st.tuples(*[st.integers(1, 4)] * 3)
 
@@ -36,7 +36,7 @@ def test_cells_are_read_x_fastest_then_y_then_z(material: NDArray[np.uint8]) -> 
     material[0, 0, 0] = 1
     texts = ["".join(chr(48 + int(code)) for code in layer) for layer in layers(material)]
     x, y, z = material.shape
-    read = material_in(structure(texts), (x, y, z), 60)
+    read = read_material(structure(texts), (x, y, z), 60)
     assert read.dtype == np.uint8
     assert (read == material).all()
 
@@ -48,11 +48,11 @@ def test_cells_are_read_x_fastest_then_y_then_z(material: NDArray[np.uint8]) -> 
 def test_written_offsets_are_read_exactly(phase: NDArray[np.float64], end: str) -> None:
     texts = [", ".join(layer) + end for layer in layers(phase)]
     x, y, z = phase.shape
-    assert (phase_in(structure(texts, "PhaseOffset"), (x, y, z)) == phase).all()
+    assert (read_phase(structure(texts, "PhaseOffset"), (x, y, z)) == phase).all()
 
 
 def test_missing_offsets_are_0() -> None:
-    assert (phase_in(structure(["1"]), (2, 1, 3)) == np.zeros((2, 1, 3))).all()
+    assert (read_phase(structure(["1"]), (2, 1, 3)) == np.zeros((2, 1, 3))).all()
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_missing_offsets_are_0() -> None:
 )
 def test_the_error_for_invalid_cells_names_their_layer(data: list[str], key: str, problem: str) -> None:
     with pytest.raises(InputError, match=problem) as caught:
-        material_in(structure(data), (2, 1, 2), 9)
+        read_material(structure(data), (2, 1, 2), 9)
     assert caught.value.key == key
 
 
@@ -90,7 +90,7 @@ def test_the_error_for_invalid_cells_names_their_layer(data: list[str], key: str
 )
 def test_the_error_for_invalid_offsets_names_their_layer(data: list[str], key: str, problem: str) -> None:
     with pytest.raises(InputError, match=problem) as caught:
-        phase_in(structure(data, "PhaseOffset"), (2, 1, 1))
+        read_phase(structure(data, "PhaseOffset"), (2, 1, 1))
     assert caught.value.key == key
 
 
@@ -99,7 +99,7 @@ def test_a_canvas_has_at_most_the_cells_that_the_solver_accepts() -> None:
         text = "".join(f"<{axis}_Voxels>{n}</{axis}_Voxels>" for axis, n in zip("XYZ", voxels, strict=True))
         return Section(etree.fromstring(f"<Structure>{text}</Structure>"), "Structure")
 
-    assert canvas_in(lengths(2**8, 2**8, 2**8)) == (2**8, 2**8, 2**8)
+    assert read_canvas(lengths(2**8, 2**8, 2**8)) == (2**8, 2**8, 2**8)
     with pytest.raises(InputError, match=r" 16777217 x 1 x 1 = 16777217 cells, .* 16777216$") as caught:
-        canvas_in(lengths(2**24 + 1, 1, 1))
+        read_canvas(lengths(2**24 + 1, 1, 1))
     assert caught.value.key == "Structure"

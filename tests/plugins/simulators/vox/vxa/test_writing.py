@@ -234,7 +234,7 @@ class TestFile:
         assert read(path)[0].palette[0].name == (name.strip() or "material 1")
 
 
-class TestRefusals:
+class TestErrors:
     def test_another_format(self) -> None:
         with pytest.raises(ConfigurationError, match=r"'stl'; .* vxa$"):
             Vox().export(body(), "stl")
