@@ -94,13 +94,13 @@ def check_samples(record: Record, clocks: Sequence[Clock], duration: float) -> N
         taken, steps = min((clock.count(record.every), clock.steps) for clock in clocks)
         if last >= taken:
             raise ConfigurationError(
-                f"the objective requires sample {last} at one sample every {record.every} s, but "
-                f"simulator.duration = {duration} s has {steps} steps, with samples 0 to {taken - 1}; "
-                "increase simulator.duration, or choose earlier or more frequent samples in the objective"
+                f"sample {last} (one every {record.every} s) does not exist: simulator.duration = {duration} s "
+                f"has {steps} steps, with samples 0 to {taken - 1}; increase simulator.duration, or select "
+                "earlier or more frequent samples"
             )
     reached = min(clock.last(record) for clock in clocks)
     if reached < record.until * (1 - _ROUNDING):
         raise ConfigurationError(
-            f"the last sample is at {reached:.6g} s, but the objective requires {record.until} s; "
-            f"increase simulator.duration = {duration} s, or choose later samples in the objective"
+            f"the last sample is at {reached:.6g} s, expected at least {record.until} s; "
+            f"increase simulator.duration = {duration} s, or select later samples"
         )

@@ -23,7 +23,7 @@ BOX = "<FRegion><PrimType>0</PrimType><dX>0.1</dX><dY>1</dY><dZ>1</dZ><DofFixed>
 
 
 def found(text: str) -> tuple[tuple[FixedRegion, ...], Unsupported]:
-    """Return the regions of an environment, and its unsupported."""
+    """Return the regions of an environment and its unsupported features."""
     unsupported = Unsupported()
     return read_regions(Section(etree.fromstring(f"<E>{text}</E>"), "E"), LATTICE, unsupported), unsupported
 
