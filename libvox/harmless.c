@@ -31,8 +31,7 @@ static bool no_voxel_is_wild(const struct body *body)
     return true;
 }
 
-/* Return the largest number of candidates of a voxel; counts them in the scratch array `touching`.
- */
+/* Return the largest number of candidates of a voxel, counted in the scratch array `touching`. */
 static int64_t most_contacts(struct body *body)
 {
     const struct pairs *pairs = &body->contacts.now;

@@ -229,7 +229,7 @@ struct voxels {
     double *weight;                    /* N, along z */
     double *turnability;               /* 1/(kg m2), the inverse of the inertia */
     double *spin_kept;  /* ratio of the spin after and before slow damping in a step */
-    double *mobile;     /* 0 if all degrees of freedom are clamped, else 1 */
+    double *mobile;     /* 1 if no degree of freedom is clamped, else 0 */
     uint8_t *substance; /* index */
     uint8_t *fixed;     /* clamped degrees of freedom */
     int32_t *touching;  /* scratch: number of current contacts, if damped or with friction */
@@ -403,7 +403,7 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
 /* Return a body to shape, possibly a reused one; NULL if memory runs out. Thread-safe. */
 struct body *vox_body_take(const vox_model *model);
 
-/* Return a body for reuse. */
+/* Release a body for reuse. */
 void vox_body_return(const vox_model *model, struct body *body);
 
 /* Free all unused bodies. */

@@ -1,5 +1,4 @@
-/* The bond law: a beam with a damper between two voxels, in one of two frames (sections 5 and 6).
- */
+/* The bond law: a damped beam between two voxels, in one of two frames (sections 5 and 6). */
 #include "axes.h"
 #include "internal.h"
 

@@ -49,8 +49,7 @@ IN_LOOP double sine(double x)
 {
     /* 1.5 * 2^52: adding it rounds to an integer */
     const double whole = 6755399441055744.0;
-    /* pi in three parts; the first two have 33 bits each, so that their products with n are exact
-     */
+    /* pi in three parts; the first two have 33 bits each, so their products with n are exact */
     const double first = 3.1415926534682512, second = 1.2154201012607932e-10,
                  third = 4.044532497591901e-21;
     const double n = (x * 0.3183098861837907 + whole) - whole, half = 0.5 * n;

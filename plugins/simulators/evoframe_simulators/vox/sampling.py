@@ -94,8 +94,8 @@ def check_samples(record: Record, clocks: Sequence[Clock], duration: float) -> N
         taken, steps = min((clock.count(record.every), clock.steps) for clock in clocks)
         if last >= taken:
             raise ConfigurationError(
-                f"sample {last} (one every {record.every} s) does not exist: simulator.duration = {duration} s "
-                f"has {steps} steps, with samples 0 to {taken - 1}; increase simulator.duration, or select "
+                f"sample {last} (one every {record.every} s) does not exist: simulator.duration = {duration} "
+                f"s has {steps} steps, with samples 0 to {taken - 1}; increase simulator.duration, or select "
                 "earlier or more frequent samples"
             )
     reached = min(clock.last(record) for clock in clocks)
