@@ -1,5 +1,5 @@
 /* The activation functions, with the formulas, scales and clamps of neat-python 2.0; the five that
- * it lacks are those of the experiment's authors. Each is evaluated as the formula stands: nothing
+ * it lacks come from the authors of the experiment. Each formula is evaluated as written: nothing
  * is simplified, reordered or fused. */
 #include <math.h>
 
@@ -7,8 +7,8 @@
 
 typedef double formula(double z);
 
-/* Volatile, or compilers put a product in the place of the C library's power, which may differ in
- * its last bit. */
+/* Volatile, so that compilers do not replace the C library's power by a product, which may differ
+ * in the last bit. */
 static const volatile double TWO = 2.0;
 static const volatile double THREE = 3.0;
 
@@ -116,8 +116,7 @@ IN_LOOP double neg_sin(double z)
 }
 /* clang-format on */
 
-/* One loop for each formula, which the compiler vectorizes where no function of the C library is
- * called. */
+/* One loop per formula, which the compiler vectorizes if it calls no function of the C library. */
 IN_LOOP void map(formula *f, double bias, double response, int64_t n, double *sums)
 {
     for (int64_t i = 0; i < n; i++) sums[i] = guarded(f(guarded(bias + response * sums[i])));

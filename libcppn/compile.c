@@ -1,24 +1,24 @@
-/* From nodes and links to a network: checks, the order of evaluation, and what can be computed
- * once. */
+/* Compilation of nodes and links to a network: checks, order of evaluation, and precomputed
+ * constants. */
 #include <stdlib.h>
 
 #include "internal.h"
 
-/* A link as its target sees it. Sources are numbered: first the inputs, then the nodes. */
+/* A link into a target. Sources are numbered: inputs first, then nodes. */
 struct arc {
     int64_t source;
     double weight;
-    const struct arc *next; /* into the same target */
+    const struct arc *next; /* next link into the same target */
 };
 
 enum mark { UNSEEN, OPEN, DONE };
 
-/* What becomes known of a node. */
+/* State of a node during compilation. */
 struct vertex {
-    struct arc *first, *last; /* what flows in, in the order of the links */
-    const struct arc *ahead;  /* what of it was not yet followed */
-    enum mark mark;           /* open while those that it depends on are looked for */
-    struct value value;       /* once done */
+    struct arc *first, *last; /* links into the node, in their order */
+    const struct arc *ahead;  /* first link that has not been followed */
+    enum mark mark;           /* OPEN while its sources are being processed */
+    struct value value;       /* if DONE */
 };
 
 struct name {
@@ -30,10 +30,10 @@ struct compiler {
     const struct cppn_node *nodes;
     const struct cppn_link *links;
     int64_t n_nodes, n_links;
-    struct name *names;      /* [n_nodes] by id */
+    struct name *names;      /* [n_nodes] sorted by id */
     struct vertex *vertices; /* [n_nodes] */
     struct arc *arcs;        /* [n_links] */
-    struct vertex **path;    /* [n_nodes] from an output against the links */
+    struct vertex **path;    /* [n_nodes] from an output to its sources */
     cppn_network *network;
     int64_t culprit;
 };
@@ -61,7 +61,7 @@ static int compare_names(const void *one, const void *other)
     return (a > b) - (a < b);
 }
 
-/* The vertex of a node's id; NULL if there is none. */
+/* Return the vertex of a node's id; NULL if it does not exist. */
 static struct vertex *find(const struct compiler *c, int64_t id)
 {
     const struct name wanted = {.id = id};
@@ -115,7 +115,7 @@ static enum cppn_status connect_nodes(struct compiler *c)
 
 /* ---- steps ----------------------------------------------------------------------------------- */
 
-/* The value of an input, or of a node that is done. */
+/* Return the value of an input or of a node that is DONE. */
 static struct value value_of(const struct compiler *c, int64_t source)
 {
     const int64_t n_inputs = c->network->n_inputs;
@@ -137,7 +137,7 @@ static struct value constant(const struct cppn_node *node, double sum)
     return (struct value){.place = NOWHERE, .constant = sum};
 }
 
-/* A step for a node whose sum is `start` before the arcs that are left, the first of which is no
+/* Add a step for a node; `start` is the sum before the remaining arcs, the first of which is not a
  * constant. */
 static struct value add_step(const struct compiler *c, const struct cppn_node *node, double start,
                              const struct arc *arc)
@@ -156,8 +156,8 @@ static struct value add_step(const struct compiler *c, const struct cppn_node *n
     return (struct value){.place = network->n_inputs + network->n_steps++};
 }
 
-/* Constants are summed here only up to the first other term: additions keep their order, and so
- * their rounding. */
+/* Determine a vertex's value. Constants are summed here only up to the first other term, so that
+ * the order of additions and their rounding do not change. */
 static void finish(const struct compiler *c, struct vertex *vertex)
 {
     const struct cppn_node *node = &c->nodes[vertex - c->vertices];
@@ -178,7 +178,7 @@ static void open_vertex(struct compiler *c, int64_t depth, struct vertex *vertex
     c->path[depth] = vertex;
 }
 
-/* Finish a vertex after all that it depends on, depth first. */
+/* Finish a vertex after all its sources, depth first. */
 static enum cppn_status finish_from(struct compiler *c, struct vertex *root)
 {
     if (root->mark == DONE) return CPPN_OK;
@@ -227,7 +227,7 @@ static enum cppn_status compile(struct compiler *c)
 
 static void *array(int64_t n, size_t size)
 {
-    return calloc((size_t)n + 1, size); /* never an empty one, for which NULL may be the answer */
+    return calloc((size_t)n + 1, size); /* never empty, because NULL may then be returned */
 }
 
 static cppn_network *allocate_network(int64_t inputs, int64_t outputs, int64_t n_nodes,

@@ -1,12 +1,12 @@
-/* The evaluation of a compiled network, some points at a time, so that all values stay in the
- * fastest cache. */
+/* Evaluation of a compiled network in blocks of points, so that all values stay in the fastest
+ * cache. */
 #include <stdlib.h>
 
 #include "internal.h"
 
-enum { BLOCK = 128 }; /* points; 1 KiB a place */
+enum { BLOCK = 128 }; /* points; 1 KiB per place */
 
-/* The guarded inputs of n points, transposed. */
+/* Read the inputs at n points, guarded and transposed. */
 static void read_points(const cppn_network *network, int64_t n, const double *restrict points,
                         double *restrict values)
 {
@@ -34,7 +34,7 @@ static void add_constant(double term, int64_t n, double *sums)
     for (int64_t i = 0; i < n; i++) sums[i] += term;
 }
 
-/* Each step's sources have places before its own. */
+/* The places of a step's sources precede its own place. */
 static void take_step(const struct step *step, const struct term *terms, int64_t n,
                       const double *values, double *own)
 {

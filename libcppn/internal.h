@@ -1,5 +1,5 @@
-/* What the files of the library share: the compiled network, and the step from a sum to a node's
- * value. What the linker sees begins with cppn_, here too. */
+/* Declarations shared by the files of the library: the compiled network, and the activation of a
+ * node. Symbols with external linkage start with cppn_. */
 #ifndef CPPN_INTERNAL_H
 #define CPPN_INTERNAL_H
 
@@ -13,48 +13,47 @@
 #error "libcppn computes the sizes of its arrays with 64 bits"
 #endif
 
-/* Inlined wherever it is called: part of a loop over points. */
+/* Always inlined: for the body of a loop over points. */
 #ifdef __GNUC__
 #define IN_LOOP static inline __attribute__((always_inline))
 #else
 #define IN_LOOP static inline
 #endif
 
-/* Stands for the place of a value that is the same at all points. */
+/* Place of a value that is constant over all points. */
 enum { NOWHERE = -1 };
 
-/* Part of a sum. */
+/* Term of a sum. */
 struct term {
     int64_t place; /* of the source's values, or NOWHERE */
-    double factor; /* the weight; if there is no place, the whole term */
+    double factor; /* weight; without a place, value of the term */
 };
 
 /* The evaluation of one node. */
 struct step {
     enum cppn_activation activation;
     double bias, response;
-    double start;       /* the sum of the constant terms that come first */
+    double start;       /* sum of the constant terms at the beginning */
     int64_t first_term; /* never a constant */
     int64_t n_terms;    /* at least 1 */
 };
 
-/* What an input or a node has at every point. */
+/* Value of an input or a node at every point. */
 struct value {
-    int64_t place;   /* of the block's values, or NOWHERE */
-    double constant; /* if there is no place */
+    int64_t place;   /* index in the block's values, or NOWHERE */
+    double constant; /* value without a place */
 };
 
-/* Places are numbered: first the inputs, then the steps. */
+/* Places are numbered: inputs first, then steps. */
 struct cppn_network {
     int64_t n_inputs, n_outputs, n_steps, n_terms;
-    bool *used;            /* [n_inputs] whether any step reads it */
+    bool *used;            /* [n_inputs] whether a step reads the input */
     struct step *steps;    /* in the order of evaluation */
     struct term *terms;    /* step after step */
     struct value *outputs; /* [n_outputs] */
 };
 
-/* Clamp to +-1e50, far beyond any value at which the formulas still mean something, and make a NaN
- * 0. */
+/* Clamp to +-1e50, far beyond the meaningful range of the formulas, and replace NaN by 0. */
 IN_LOOP double guarded(double z)
 {
     const double limit = 1e50;
@@ -63,7 +62,7 @@ IN_LOOP double guarded(double z)
     return within == within ? within : 0.0;
 }
 
-/* Replace the sums of n points by the node's values there. */
+/* Replace the sums at n points by the values of the node. */
 void cppn_activate(enum cppn_activation activation, double bias, double response, int64_t n,
                    double *sums);
 

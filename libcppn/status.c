@@ -1,4 +1,4 @@
-/* What each status means, for a person. */
+/* Messages for statuses. */
 #include "cppn.h"
 
 const char *cppn_status_message(enum cppn_status status)
@@ -7,12 +7,10 @@ const char *cppn_status_message(enum cppn_status status)
     case CPPN_OK: return "no error";
     case CPPN_NO_MEMORY: return "not enough memory";
     case CPPN_NULL_ARGUMENT: return "a required array is missing";
-    case CPPN_BAD_INPUTS: return "a network has between 1 and 65536 inputs";
-    case CPPN_BAD_OUTPUTS: return "a network has between 1 and 65536 outputs";
-    case CPPN_BAD_NODES:
-        return "a network has at most 65536 nodes, and not a negative number of them";
-    case CPPN_BAD_LINKS:
-        return "a network has at most 1048576 connections, and not a negative number of them";
+    case CPPN_BAD_INPUTS: return "the number of inputs must be between 1 and 65536";
+    case CPPN_BAD_OUTPUTS: return "the number of outputs must be between 1 and 65536";
+    case CPPN_BAD_NODES: return "the number of nodes must be between 0 and 65536";
+    case CPPN_BAD_LINKS: return "the number of connections must be between 0 and 1048576";
     case CPPN_BAD_NODE_ID: return "the id of a node is negative";
     case CPPN_REPEATED_NODE: return "two nodes have the same id";
     case CPPN_UNKNOWN_ACTIVATION: return "a node has an unknown activation";

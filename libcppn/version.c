@@ -1,4 +1,4 @@
-/* Which library this is. */
+/* Version of the library. */
 #include "cppn.h"
 
 const char *cppn_version(void)

@@ -1,19 +1,19 @@
-/* From cells with materials to voxels and bonds (sections 2, 3 and 8). */
+/* Conversion of cells with materials to voxels and bonds (sections 2, 3 and 8). */
 #include <stdlib.h>
 #include <string.h>
 
 #include "internal.h"
 #include "kernels/lanes.h"
 
-static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's own */
-static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; substeps still fit 64 bits */
-/* bytes; asking for more takes little of the time it is used */
+static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's value */
+static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; times substeps fits 64 bits */
+/* bytes; for larger bodies the time of an allocation is negligible */
 static const size_t LARGEST_SPARE = (size_t)1 << 26;
-static const size_t LINE = 64; /* bytes of the processor's cache, at most */
+static const size_t LINE = 64; /* bytes, largest cache line of a processor */
 
 /* ---- the cells ------------------------------------------------------------------------------- */
 
-/* A cell of the canvas on the way through it, x fastest. */
+/* Current cell of a loop over the canvas, x fastest. */
 struct cursor {
     int64_t cell, at[3];
 };
@@ -28,8 +28,8 @@ static bool step_on(struct cursor *cursor, const struct vox_settings *s)
     return ++cursor->at[2] < s->nz;
 }
 
-/* Whether a bond leads from a cell with a voxel along +axis: neighbours that are both held in all
- * degrees of freedom have none. */
+/* Return whether a voxel has a bond along +axis: neighbors that are both clamped in all degrees of
+ * freedom have none. */
 static bool has_bond(const vox_model *model, const uint8_t *material, const struct cursor *cursor,
                      enum axis axis)
 {
@@ -41,8 +41,8 @@ static bool has_bond(const vox_model *model, const uint8_t *material, const stru
     return !(model->fixed[cursor->cell] == VOX_FIX_ALL && model->fixed[next] == VOX_FIX_ALL);
 }
 
-/* Section 3. A body without bonds has another step, as the engine does: the square root of the edge
- * is missing. */
+/* Section 3. A body without bonds has a different time step, like in the engine: the square root of
+ * the edge is missing. */
 static enum vox_status set_clock(struct census *census, const vox_model *model, double fastest_bond,
                                  double fastest_voxel)
 {
@@ -57,7 +57,7 @@ static enum vox_status set_clock(struct census *census, const vox_model *model, 
     return census->dt > 0.0 ? VOX_OK : VOX_BAD_TIME_STEP;
 }
 
-/* Widens the box of a census (`length` being its last cell for the time being) by a cell. */
+/* Extend the box of a census by a cell; until the census is complete, `length` is the last cell. */
 static void widen(struct census *census, const struct cursor *cursor)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -98,7 +98,7 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
 
 /* ---- slots ----------------------------------------------------------------------------------- */
 
-/* Those after the box too: a tile's upper ends may lie there. */
+/* Number of slots including the padding after the box, which may contain upper ends of a tile. */
 static int64_t slots_in_all(const struct body *body)
 {
     int64_t farthest = 1;
@@ -116,14 +116,14 @@ static int64_t slot_of(const struct body *body, const struct cursor *cursor)
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
-/* Hands out parts of a piece of memory; without one, only counts what would be needed. */
+/* Allocator in a block of memory; without a block, it only counts the required size. */
 struct arena {
     char *base;
     size_t used;
 };
 
-/* An odd number of cache lines, so that arrays of one length do not meet in one set of the
- * cache. */
+/* Allocate an odd number of cache lines, so that arrays of the same length do not map to the same
+ * set of the cache. */
 static void *take(struct arena *arena, int64_t n, size_t size)
 {
     const size_t lines = ((size_t)n * size + LINE - 1) / LINE | 1;
@@ -237,7 +237,7 @@ static void place_voxel(struct body *body, const struct cursor *cursor, int32_t 
     if (fixed != 0 && fixed != VOX_FIX_ALL) body->partly[body->n_partly++] = (int32_t)slot;
 }
 
-/* Where the lattice has its cells, also after the box. */
+/* Set the positions of cells in the lattice, including the padding after the box. */
 static void place_starts(struct body *body)
 {
     const double edge = body->model->settings.voxel_size;
@@ -310,7 +310,7 @@ static bool same_law(const struct coupling *one, const struct coupling *other)
     return true;
 }
 
-/* The coupling that all bonds of a model's bodies have, or NULL if they may differ. */
+/* Return the coupling of all bonds of a model's bodies, or NULL if couplings can differ. */
 static const struct coupling *only_coupling(const vox_model *model)
 {
     const struct coupling *first = &model->couplings[0];
@@ -400,7 +400,7 @@ void vox_body_rest(struct body *body, const double *phase_cycles)
     if (body->model->settings.self_collision) vox_contacts_rest(body);
 }
 
-/* ---- bodies that are used again -------------------------------------------------------------- */
+/* ---- reused bodies --------------------------------------------------------------------------- */
 
 static void body_destroy(struct body *body)
 {

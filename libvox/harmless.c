@@ -1,15 +1,15 @@
-/* What a step cannot do, however its forces turn out: a bound that needs no forces
- * (docs/solver.md). */
+/* A bound on the effect of a step that does not require its forces (docs/solver.md). */
 #include "internal.h"
 
-/* For roundings, and for frames that are not quite unit quaternions. */
+/* For rounding errors, and for frames that are not exactly unit quaternions. */
 static const double MARGIN = 1.01;
-static const double FARTHEST_TURN = 6.3; /* rad, of the end of a bond, if no voxel is turned far */
-static const double LEAST_COSINE = 0.75; /* of half the angle of a voxel's turn, for that */
-static const double SHORTEST = 1e-150;   /* s; the square of a time step must not vanish */
-static const double WILDEST = 1e200;     /* J, of a spin: far from overflowing */
+static const double FARTHEST_TURN = 6.3; /* rad, at an end of a bond, if no voxel is turned far */
+static const double LEAST_COSINE =
+    0.75; /* of half the rotation angle of a voxel that is not turned far */
+static const double SHORTEST = 1e-150; /* s; the square of a time step must not underflow */
+static const double WILDEST = 1e200;   /* J, of a spin: far from overflow */
 
-/* Whether the step damps all spins or leaves them as they are. */
+/* Return whether slow damping does not increase any spin. */
 static bool spins_do_not_grow(const struct body *body)
 {
     const vox_model *model = body->model;
@@ -18,7 +18,7 @@ static bool spins_do_not_grow(const struct body *body)
     return true;
 }
 
-/* Whether no bond can look turned by nearly a whole turn, where rotation vectors have no bound. */
+/* Return whether no bond can be turned by almost 2 pi, where rotation vectors are unbounded. */
 static bool no_voxel_is_wild(const struct body *body)
 {
     const struct voxels *v = &body->voxels;
@@ -31,7 +31,7 @@ static bool no_voxel_is_wild(const struct body *body)
     return true;
 }
 
-/* Most voxels that one is listed with; counts them where those that it touches are counted too. */
+/* Return the largest number of candidates of a voxel, counted in the scratch array `touching`. */
 static int64_t most_contacts(struct body *body)
 {
     const struct pairs *pairs = &body->contacts.now;
@@ -54,10 +54,9 @@ bool vox_next_step_is_harmless(struct body *body)
         return false;
     const double edge = s->voxel_size, dt = body->census.dt;
     if (!(dt >= SHORTEST) || !spins_do_not_grow(body) || !no_voxel_is_wild(body)) return false;
-    /* a bond, as it is and as it was, is stretched by less than this, in edges */
+    /* bound on the stretch of a bond, now and in the previous step, in edges */
     const double stretch = 1.0 + (2.0 * body->farthest + model->largest_size) / edge;
-    /* what moves a voxel by an edge in a step, as a share of what a bond does that is stretched by
-     * an edge */
+    /* displacements in one step, in edges, due to a bond that is stretched by one edge */
     const double spring = model->fastest * dt * dt, damper = s->bond_damping * sqrt(spring);
     const double bonds =
         6.0 * (spring * (stretch + FARTHEST_TURN) + damper * 2.0 * (stretch + FARTHEST_TURN));

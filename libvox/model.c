@@ -1,5 +1,5 @@
-/* Settings and materials: what their ranges leave to be checked, and the constants that follow from
- * them (sections 1, 5, 6 and 9). */
+/* Settings and materials: checks beyond their ranges, and derived constants (sections 1, 5, 6 and
+ * 9). */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -71,7 +71,7 @@ static struct damper damper_of(const struct coupling *c, const struct substance 
     };
 }
 
-/* An Euler-Bernoulli beam of square section, as thick as it is long. */
+/* An Euler-Bernoulli beam of square cross section, as thick as it is long. */
 static struct coupling coupling_between(const struct substance *lower,
                                         const struct substance *upper, const struct vox_settings *s)
 {
@@ -111,7 +111,7 @@ static enum vox_status read_palette(vox_model *model, const struct vox_material 
     return model->n_substances > 0 ? VOX_OK : VOX_BAD_PALETTE;
 }
 
-/* No actuation makes a voxel larger (section 4). */
+/* Upper bound of the size of a voxel under any actuation (section 4). */
 static double largest_size(const vox_model *model)
 {
     double amplitude = 0.0;

@@ -1,14 +1,13 @@
-/* What settings and properties of materials may be: one table each, from which checks and messages
- * come. */
+/* Ranges of settings and material properties: one table each, used for checks and messages. */
 #include "internal.h"
 
 struct row {
     struct vox_range range;
-    size_t offset; /* of the field in its struct */
+    size_t offset; /* of the field in the struct */
     const char *message;
 };
 
-/* Of a field of OWNER, the numbers being written as a person reads them. */
+/* Row for a field of OWNER; messages contain the numbers as written here. */
 #define ROW(status, field, low, low_in, high, high_in, words)              \
     {{#field, status, IS_WHOLE(field), low, high, low_in, high_in, words}, \
      offsetof(OWNER, field),                                               \
@@ -77,7 +76,7 @@ const struct vox_range *vox_property_range(int32_t number)
     return number >= 0 && number < N_PROPERTIES ? &properties[number].range : NULL;
 }
 
-/* False for a NaN. */
+/* Return whether a number is in a range; false for NaN. */
 static bool is_in(const struct vox_range *range, double x)
 {
     return (range->lower_included ? x >= range->lower : x > range->lower) &&

@@ -1,4 +1,4 @@
-/* What is recorded of a simulation. Nothing here changes a body. */
+/* Recording of tracks. Nothing in this file changes a body. */
 #include "internal.h"
 
 static void write_vec(double *out, struct vec v)
@@ -8,7 +8,7 @@ static void write_vec(double *out, struct vec v)
     out[2] = v.z;
 }
 
-/* Mass-weighted mean of the voxels whose initial x is at least so large. */
+/* Mass-weighted mean position of the voxels whose initial x is at least `from_x`. */
 static struct vec mean_position(const struct body *body, double from_x)
 {
     struct vec moment = {0};
@@ -25,7 +25,8 @@ static struct vec mean_position(const struct body *body, double from_x)
 
 static double largest_start_x(const struct body *body)
 {
-    return body->voxels.start.x[body->census.length[0] - 1]; /* the box ends at the last voxel */
+    return body->voxels.start
+        .x[body->census.length[0] - 1]; /* the last voxel is at the end of the box */
 }
 
 static void write_voxels(const struct body *body, double *out)

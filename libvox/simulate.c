@@ -1,12 +1,13 @@
-/* The calls on a batch: check everything, then simulate body after body (sections 3 and 7). */
+/* Functions for batches: check all arguments, then simulate one body after another (sections 3 and
+ * 7). */
 #include <string.h>
 
 #include "internal.h"
 
 static const double MOST_CYCLES = 1e6;
 
-/* Whether a batch fits the longest tracks: a sample of a body takes 24 bytes for each cell, or 48
- * in all. */
+/* Return whether the sizes of all tracks can be represented: a sample of a body has 24 bytes per
+ * cell in `voxels`, and at most 48 bytes in other tracks. */
 static bool batch_fits(int64_t n_bodies, int64_t n_samples, int64_t cells)
 {
     const int64_t most = (int64_t)(PTRDIFF_MAX / 48) / cells;
@@ -67,7 +68,7 @@ static enum vox_status check_body(const vox_model *model, const uint8_t *materia
     return VOX_OK;
 }
 
-/* False if the body diverged. All forces are complete before any voxel moves. */
+/* Make a step; return false if the body diverged. No voxel moves before all forces are complete. */
 static bool advance(struct body *body, bool first_step, bool needed)
 {
     const vox_model *model = body->model;
@@ -80,9 +81,8 @@ static bool advance(struct body *body, bool first_step, bool needed)
     return model->kernel->voxels_advance(body);
 }
 
-/* Runs one body to its end, its samples going to `row` and the rows after it. Returns 0 or the step
- * at which it diverged. The very last step need not be made if no sample comes after it and it
- * cannot diverge. */
+/* Simulate a body to the end and write its samples from `row` on. Return 0 or the step at which it
+ * diverged. The last step is skipped if no sample follows it and it cannot diverge. */
 static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps,
                    const struct vox_tracks *tracks, int64_t row)
 {
@@ -100,7 +100,7 @@ static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_s
     }
 }
 
-/* Whether a body is made of the same materials as the one before it. */
+/* Return whether a body has the same materials as the previous one. */
 static bool is_same(const vox_model *model, const uint8_t *material, int64_t i)
 {
     const uint8_t *own = material + i * model->cells;
@@ -114,7 +114,7 @@ static enum vox_status set_body(struct body *body, const vox_model *model, const
     return status == VOX_OK ? vox_body_shape(body, model, &census, material) : status;
 }
 
-/* The row of a body; there may be no array where there is no sample. */
+/* Return the sample steps of a body; the array may be NULL without samples. */
 static const int64_t *own_steps(const int64_t *sample_steps, int64_t body, int64_t n_samples)
 {
     return n_samples > 0 ? sample_steps + body * n_samples : sample_steps;

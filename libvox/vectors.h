@@ -2,7 +2,7 @@
 #ifndef VOX_VECTORS_H
 #define VOX_VECTORS_H
 
-/* Inlined wherever it is called: part of a loop over all bonds or contacts. */
+/* Always inlined: for the body of a loop over all bonds or contacts. */
 #ifdef __GNUC__
 #define IN_LOOP static inline __attribute__((always_inline))
 #else
@@ -57,7 +57,7 @@ static inline struct quat quat_mul(struct quat a, struct quat b)
     };
 }
 
-/* q v q*: rotates, and scales by |q|^2. */
+/* q v q*: rotate, and scale by |q|^2. */
 static inline struct vec quat_rotate(struct quat q, struct vec v)
 {
     const struct vec axis = {q.x, q.y, q.z};

@@ -1,4 +1,4 @@
-/* Which library this is, and what made it. */
+/* Version and compiler of the library. */
 #include "vox.h"
 
 const char *vox_version(void)

@@ -1,8 +1,8 @@
-"""Pattern-producing networks: compiled once, and then called with arrays of points.
+"""Pattern-producing networks, compiled once and then called with arrays of points.
 
-The network itself is the C library in ``libcppn/``: it checks what it is given, releases the GIL while it
-works, and keeps no state, so threads may share a network. What it computes, to the last bit, is in
-``libcppn/include/cppn.h``.
+The implementation is the C library in ``libcppn/``. It checks its arguments, releases the GIL during
+computation, and keeps no state, so that threads can share a network. ``libcppn/include/cppn.h`` defines its
+values to the last bit.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,7 +16,7 @@ from evoframe_libcppn._cppn import ffi, lib
 __all__ = ["ACTIVATIONS", "VERSION", "CppnNetwork", "Link", "Node"]
 
 VERSION: Final[str] = ffi.string(lib.cppn_version()).decode()
-"""Version of the library; its second number rises with whatever changes its interface or a bit of the
+"""Version of the library; the second number increases with every change of the interface or of a bit of the
 results."""
 
 ACTIVATIONS: Final[tuple[str, ...]] = tuple(
@@ -44,29 +44,29 @@ class Node(Protocol):
 
     @property
     def bias(self) -> float:
-        """What is added to the sum."""
+        """Number that is added to the scaled sum."""
 
     @property
     def response(self) -> float:
-        """What the sum is multiplied by."""
+        """Factor of the sum."""
 
 
 class CppnNetwork:
     """A feed-forward network: ``float64[n, inputs] -> float64[n, outputs]``, finite for any input.
 
     Inputs have the ids -1, -2, ... and outputs 0, 1, ..., as in neat-python. Nodes that no output depends on
-    are left out, and those that no input acts on are computed once.
+    are omitted, and nodes that do not depend on inputs are computed only once.
 
     Args:
         inputs: Number of inputs.
         outputs: Number of outputs.
         nodes: Id -> node, outputs included.
-        links: The connections, in the order in which a node sums its inputs.
+        links: Connections, in the order in which nodes sum their inputs.
 
     Raises:
-        ValueError: An output or an end of a link is missing, an activation is unknown, there is a cycle, or a
-            number is out of its range.
-        MemoryError: There is not enough memory.
+        ValueError: An output or an end of a link is missing, an activation is unknown, the network has a
+            cycle, or a number is out of range.
+        MemoryError: Memory is insufficient.
     """
 
     __slots__ = ("_handle", "inputs", "outputs")
@@ -89,14 +89,14 @@ class CppnNetwork:
                 culprit,
             )
         except OverflowError as error:
-            raise ValueError("an id or a number of the network does not fit into 64 bits") from error
+            raise ValueError("an id or a number of the network exceeds 64 bits") from error
         if status != lib.CPPN_OK:
             raise _error(status, _detail(status, culprit[0], nodes, arcs))
         self._handle = ffi.gc(pointer[0], lib.cppn_destroy)
 
     @property
     def evaluated_nodes(self) -> int:
-        """How many nodes are evaluated at each point."""
+        """Number of nodes that are evaluated at each point."""
         count: int = lib.cppn_evaluated_nodes(self._handle)
         return count
 
@@ -117,7 +117,7 @@ class CppnNetwork:
 
 
 def _detail(status: int, culprit: int, nodes: Mapping[int, Node], links: Sequence[Link]) -> str:
-    """Return what is wrong with a network beyond what the status says."""
+    """Return the detail of an error that its status does not contain."""
     if status == lib.CPPN_UNKNOWN_END:
         source, target, _ = links[culprit]
         return f": {source} -> {target}"
@@ -130,6 +130,6 @@ def _detail(status: int, culprit: int, nodes: Mapping[int, Node], links: Sequenc
 
 
 def _error(status: int, detail: str) -> Exception:
-    """Return the error that a status stands for."""
+    """Return the exception for a status."""
     message = ffi.string(lib.cppn_status_message(status)).decode() + detail
     return MemoryError(message) if status == lib.CPPN_NO_MEMORY else ValueError(message)

@@ -1,4 +1,4 @@
-# The extension that extensions.py makes of libcppn/include/cppn.h.
+# The extension that extensions.py builds from libcppn/include/cppn.h.
 from typing import Any
 
 ffi: Any

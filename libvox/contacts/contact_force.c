@@ -1,8 +1,8 @@
-/* Self collision: how voxels that touch repel each other (section 10); damping and friction are
- * ours. */
+/* Self collision: forces between touching voxels (section 10). The engine has neither damping nor
+ * friction. */
 #include "internal.h"
 
-/* Two voxels closer than their envelopes reach. */
+/* Two voxels whose envelopes overlap. */
 struct touch {
     int32_t first, second;
     struct vec towards; /* unit, from the first to the second */
@@ -15,7 +15,7 @@ static struct vec spin_rate(const struct voxels *v, int64_t slot)
     return vec_scale(v->turnability[slot], vec_at(v->spin, slot));
 }
 
-/* Velocity of the second against the first where they touch, half-way between them. */
+/* Velocity of the second voxel relative to the first at the contact point, halfway between them. */
 static struct vec relative_velocity(const struct voxels *v, const struct touch *touch)
 {
     const struct vec lever = vec_scale(0.5 * touch->distance, touch->towards);
@@ -30,7 +30,7 @@ IN_LOOP void push_apart(const struct voxels *v, const struct touch *touch, struc
     vec_put(v->force, touch->second, vec_add(vec_at(v->force, touch->second), force));
 }
 
-/* Forces half-way between two voxels turn both, so that their angular momentum stays. */
+/* Apply the torques of forces halfway between two voxels, which conserve angular momentum. */
 static void turn_both(const struct voxels *v, const struct touch *touch, struct vec force)
 {
     const struct vec torque = vec_cross(force, vec_scale(0.5 * touch->distance, touch->towards));
@@ -38,23 +38,21 @@ static void turn_both(const struct voxels *v, const struct touch *touch, struct 
     vec_put(v->torque, touch->second, vec_add(vec_at(v->torque, touch->second), torque));
 }
 
-/* How many contacts share what a step can take from the motion of two voxels. */
+/* Number of contacts that share the momentum change of a step. */
 static double sharers(const struct voxels *v, const struct touch *touch)
 {
     const int32_t first = v->touching[touch->first], second = v->touching[touch->second];
     return (double)(first > second ? first : second);
 }
 
-/* The damper of which all contacts together would end the approach within one step; none is ever
- * stronger. */
+/* Upper limit of damping: with it, all contacts together stop the approach within one step. */
 static double strongest_drag(const struct voxels *v, const struct touch *touch, double dt)
 {
     return 1.0 /
            (dt * sharers(v, touch) * (v->mobility[touch->first] + v->mobility[touch->second]));
 }
 
-/* The force of which all contacts together would end the sliding within one step; friction never
- * exceeds it. */
+/* Upper limit of friction: with it, all contacts together stop the sliding within one step. */
 static double stopping_force(const struct voxels *v, const struct touch *touch, double speed,
                              double dt)
 {
@@ -82,21 +80,22 @@ static void collide(const struct body *body, const struct touch *touch)
     const struct vec velocity = relative_velocity(v, touch);
     const double parting = vec_dot(velocity, touch->towards);
     const double drag = fmin(c->touch_drag, strongest_drag(v, touch, body->census.dt));
-    const double push = fmax(0.0, c->stretch * touch->overlap - drag * parting); /* never a pull */
+    const double push =
+        fmax(0.0, c->stretch * touch->overlap - drag * parting); /* never attractive */
     const struct vec rub =
         friction(body, touch, vec_sub(velocity, vec_scale(parting, touch->towards)), push);
     push_apart(v, touch, vec_add(vec_scale(push, touch->towards), rub));
     turn_both(v, touch, rub);
 }
 
-/* The original engine's law. */
+/* Apply the original engine's law. */
 IN_LOOP void repel(const struct body *body, const struct touch *touch)
 {
     const double stiffness = coupling_of(body, touch->first, touch->second)->stretch;
     push_apart(&body->voxels, touch, vec_scale(stiffness * touch->overlap, touch->towards));
 }
 
-/* Whether two listed voxels touch, and how; half the envelope is theirs. */
+/* Return whether two listed voxels touch, and set the contact. */
 IN_LOOP bool touches(const struct voxels *v, struct pair pair, double half_envelope,
                      struct touch *touch)
 {

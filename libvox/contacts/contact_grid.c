@@ -1,11 +1,11 @@
-/* The skin of a body by where it is now: cubes at least as wide as the reach, so that whatever is
- * in reach of a voxel lies in its cube or in one beside it. */
+/* Grid of cubes over the skin at its current position. Cubes are at least as wide as the reach, so
+ * that all voxels in reach are in the same cube or in an adjacent one. */
 #include <stdlib.h>
 
 #include "internal.h"
 
 static const double ROUNDING = 1e-12;
-static const int64_t CUBES_PER_VOXEL = 4; /* at most; a body spread widely gets wider cubes */
+static const int64_t CUBES_PER_VOXEL = 4; /* maximum; a widespread body has larger cubes */
 
 enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin)
 {
@@ -58,7 +58,7 @@ static struct span span_of(const struct body *body)
     return span;
 }
 
-/* Widens the cubes until there is room for all. */
+/* Enlarge the cubes until their number is small enough. */
 static void choose_cubes(struct grid *grid, const struct span *span, double reach)
 {
     double cubes;
@@ -75,7 +75,7 @@ static void choose_cubes(struct grid *grid, const struct span *span, double reac
         grid->length[axis] = (int64_t)((span->most[axis] - span->least[axis]) / grid->edge) + 1;
 }
 
-/* Place of a coordinate along an axis of the grid; rounding may put it beyond the end. */
+/* Index of a coordinate along an axis of the grid; limited because rounding may exceed the end. */
 static int64_t place_in(const struct grid *grid, int axis, double at)
 {
     const int64_t place = (int64_t)((at - grid->corner[axis]) / grid->edge);
@@ -110,7 +110,7 @@ void vox_grid_fill(struct grid *grid, const struct body *body, double reach)
     }
 }
 
-/* Adds the voxels of a row of cubes that come after one and are in reach of it. */
+/* Add the voxels after `first` in a row of cubes that are within its reach. */
 static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last, int32_t first,
                              struct vec position, int64_t n)
 {
@@ -118,13 +118,13 @@ static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last
     for (int32_t k = grid->begin[cube]; k < grid->begin[last + 1]; k++) {
         const int32_t other = grid->voxels[k];
         const struct vec apart = vec_sub(grid->packed[k], position);
-        grid->found[n] = other; /* overwritten by the next unless it counts: without a jump */
+        grid->found[n] = other; /* overwritten by the next one unless it counts; avoids a jump */
         n += (other > first) & (vec_dot(apart, apart) < reach2);
     }
     return n;
 }
 
-/* By insertion: there are few. */
+/* Insertion sort, for few slots. */
 static void sort(int32_t *slots, int64_t n)
 {
     for (int64_t i = 1; i < n; i++) {

@@ -1,30 +1,30 @@
-/* Self collision: which voxels may touch (section 10).
+/* Self collision: list of contact candidates (section 10).
  *
- * Lists are sorted by their first voxel, then by the second, so that forces are added in an order
- * that does not depend on how a list was found. */
+ * Lists are sorted by first, then by second voxel, so that the order in which forces are added does
+ * not depend on the algorithm. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "internal.h"
 
-/* How much denser than the lattice voxels may lie while all contacts are listed. */
+/* Density of voxels, relative to the lattice, up to which the list holds all contacts. */
 static const double CROWDING = 2.0;
 
 /* ---- distances ------------------------------------------------------------------------------- */
 
-/* How far the fastest voxel may move before the list is made anew, in lattice edges. */
+/* Distance that the fastest voxel may move before the list is rebuilt, in lattice edges. */
 static double leeway(const struct vox_settings *s)
 {
     return (s->collision_horizon - 1.0) / 2.0;
 }
 
-/* The original engine lists nothing beyond, m. */
+/* Distance beyond which the original engine lists no pairs, m. */
 static double engine_reach(const struct vox_settings *s)
 {
     return s->collision_list_factor * s->collision_horizon * s->voxel_size;
 }
 
-/* A complete list has all that can touch before the next one. */
+/* A complete list contains all pairs that can touch before the next list. */
 double vox_contacts_reach(const vox_model *model)
 {
     const struct vox_settings *s = &model->settings;
@@ -33,7 +33,7 @@ double vox_contacts_reach(const vox_model *model)
     return fmin(engine_reach(s), s->collision_horizon * model->largest_size);
 }
 
-/* Most pairs that are listed for each voxel: half of the voxels of a sphere, a pair being listed
+/* Maximum number of listed pairs per voxel: half of the voxels in a sphere, as each pair is listed
  * once. */
 static int64_t pairs_per_voxel(const vox_model *model)
 {
@@ -53,7 +53,7 @@ static void place_skin(struct body *body)
     }
 }
 
-/* Whatever is listed later has room: that never fails for want of memory. */
+/* Reserve the memory for all later lists, so that steps never allocate. */
 static enum vox_status make_room(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
@@ -91,13 +91,13 @@ void vox_contacts_destroy(struct contacts *contacts)
     vox_grid_destroy(&contacts->grid);
 }
 
-/* ---- making a list --------------------------------------------------------------------------- */
+/* ---- building a list ------------------------------------------------------------------------- */
 
-/* When a pair is close enough to be listed, m. */
+/* Distances below which a pair is listed, m. */
 struct limits {
     double reach;   /* of any list */
-    double engine;  /* of the original engine's, or infinite */
-    double horizon; /* of the original engine's, in sizes of the first voxel; or infinite */
+    double engine;  /* of the original engine's list, or infinite */
+    double horizon; /* of the original engine's list, in sizes of the first voxel, or infinite */
 };
 
 static struct limits limits_of(const vox_model *model)
@@ -107,7 +107,7 @@ static struct limits limits_of(const vox_model *model)
     return (struct limits){vox_contacts_reach(model), engine_reach(s), s->collision_horizon};
 }
 
-/* Voxels exactly at the original engine's reach are out. */
+/* Return whether a pair is listed; pairs exactly at the original engine's reach are not. */
 IN_LOOP bool is_due(const struct voxels *v, struct pair pair, const struct limits *limits)
 {
     const struct vec apart =
@@ -130,7 +130,7 @@ static bool has_strayed(const struct body *body)
     return false;
 }
 
-/* False if the list is full; so for the next two. */
+/* Add a pair to the list; like the next two functions, return false if it is full. */
 static bool list_one(struct contacts *contacts, struct pair pair)
 {
     if (contacts->now.n == contacts->most) return false;
@@ -180,7 +180,7 @@ static void copy(struct pairs *to, const struct pairs *from)
     if (from->n > 0) memcpy(to->list, from->list, (size_t)from->n * sizeof *from->list);
 }
 
-/* At rest all controllers of a body begin with the same list. */
+/* Reuse the list at rest, which is the same for all controllers of a body. */
 static bool list_at_rest(struct body *body)
 {
     struct contacts *contacts = &body->contacts;

@@ -1,6 +1,5 @@
-/* Self collision: which pairs can touch as long as no voxel is far from its start. What decides it,
- * whether cells near each other have voxels and whether a few bonds join them, is computed for 64
- * slots at a time. */
+/* Self collision: pairs that can touch as long as no voxel is far from its start. The search for
+ * voxels in near cells that are not connected by a few bonds processes 64 slots at a time. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +22,7 @@ static void set(uint64_t *bits, int64_t slot)
     bits[slot / 64] |= (uint64_t)1 << slot % 64;
 }
 
-/* 64 bits from a slot on, which may lie before or after all slots: those are not set. */
+/* Return 64 bits starting at a slot; bits before and after all slots are 0. */
 static uint64_t bits_from(const uint64_t *bits, int64_t n_words, int64_t slot)
 {
     const int64_t word = slot >= 0 ? slot / 64 : -((63 - slot) / 64), shift = slot - 64 * word;
@@ -49,9 +48,9 @@ static int64_t slots_by(const struct body *body, const int32_t by[3])
     return by[0] + by[1] * body->step[1] + by[2] * body->step[2];
 }
 
-/* ---- voxels that are joined by a few bonds --------------------------------------------------- */
+/* ---- voxels that are connected by a few bonds ------------------------------------------------ */
 
-/* Marks from which voxels one of the shortest ways to a place consists of bonds. */
+/* Mark the voxels from which a shortest path to a place has all bonds. */
 static void join(const struct body *body, const struct near_by *near_by, int64_t place_index)
 {
     const int64_t n_words = words_of(body);
@@ -73,7 +72,7 @@ static void join_all(const struct body *body, const struct near_by *near_by)
     memset(near_by->bonds, 0, 6 * size);
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
-        set(near_by->joined, slot); /* the first place is where the voxel itself is */
+        set(near_by->joined, slot); /* the first place is the voxel itself */
         for (int side = 0; side < 6; side++)
             if (body->bonded[slot] >> side & 1) set(near_by->bonds + side * words_of(body), slot);
     }
@@ -81,7 +80,7 @@ static void join_all(const struct body *body, const struct near_by *near_by)
         join(body, near_by, place);
 }
 
-/* Marks the voxels to which a way of at most so many bonds leads: a breadth-first search. */
+/* Mark the voxels within `hops` bonds by a breadth-first search. */
 static void search_from(const struct body *body, struct search *search, int32_t from, int64_t hops)
 {
     int64_t begin = 0, n = 0;
@@ -105,8 +104,8 @@ static void search_from(const struct body *body, struct search *search, int32_t 
     }
 }
 
-/* Whether two voxels are joined by few bonds, though not by one of the shortest ways on the
- * lattice: any other is longer by two bonds at least. */
+/* Return whether two voxels are connected by a few bonds on a detour, which has at least two bonds
+ * more than the shortest paths on the lattice. */
 static bool is_joined_around(const struct body *body, struct search *search, struct pair pair,
                              const int32_t by[3])
 {
@@ -135,8 +134,8 @@ bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, s
 
 /* ---- the list -------------------------------------------------------------------------------- */
 
-/* Which of 64 voxels of the skin have another in a near cell, to which they are not joined
- * straight. A cell across the border of the box counts as the one where its slot is. */
+/* Return which of 64 skin voxels have another one in a near cell without a shortest path of bonds.
+ * An offset across the border of the box gives the cell with that slot. */
 static uint64_t candidates(const struct body *body, const struct near_by *near_by,
                            const struct near_cell *cell, int64_t word)
 {
@@ -153,8 +152,8 @@ static bool is_at(const struct body *body, struct pair pair, const int32_t by[3]
     return found[0] == by[0] && found[1] == by[1] && found[2] == by[2];
 }
 
-/* Hands each pair of voxels in near cells to `begin`, which counts the pairs of each voxel, or, if
- * there is one, to the list, where `begin` says at which place the next pair of a voxel goes. */
+/* Count the pairs in near cells of each voxel in `begin`, and write them to `list` unless it is
+ * NULL; `begin` is then the index of the next pair of a voxel. */
 static void visit(const struct body *body, const struct near_by *near_by, int64_t *begin,
                   struct pair *list)
 {
@@ -174,8 +173,8 @@ static void visit(const struct body *body, const struct near_by *near_by, int64_
     }
 }
 
-/* Leaves only the pairs that are not joined by a longer way either. Such a way has 4 bonds at
- * least: neighbours face to face are bonded, or held. */
+/* Remove the pairs that are connected by a detour. A detour has at least 4 bonds, because neighbors
+ * with a common face have a bond or are clamped. */
 static void drop_joined(const struct body *body, struct near_by *near_by)
 {
     if (body->model->vicinity.hops < 4) return;

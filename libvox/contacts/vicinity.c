@@ -1,4 +1,4 @@
-/* The lattice around a voxel: how far a few bonds may lead, and which cells are near it. */
+/* The lattice around a voxel: places within a few bonds, and near cells. */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -17,7 +17,7 @@ int64_t vox_vicinity_index(const struct vicinity *vicinity, const int32_t by[3])
     return vicinity->index[by[0] + hops + width * (by[1] + hops + width * (by[2] + hops))];
 }
 
-/* How a place is reached from those that are a bond closer to the middle. */
+/* Find the last bonds of the shortest paths to a place. */
 static void find_ways(const struct vicinity *vicinity, struct place *place)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -30,7 +30,7 @@ static void find_ways(const struct vicinity *vicinity, struct place *place)
     }
 }
 
-/* Appends the places that are so many steps from the middle. */
+/* Append the places at a distance of `steps` from the center. */
 static void append_shell(struct vicinity *vicinity, int64_t steps)
 {
     const int32_t hops = (int32_t)vicinity->hops;
@@ -50,13 +50,13 @@ static void append_shell(struct vicinity *vicinity, int64_t steps)
 
 /* ---- the cells within a radius --------------------------------------------------------------- */
 
-/* Whether a step in the lattice leads to a later slot. */
+/* Return whether an offset in the lattice leads to a later slot. */
 static bool leads_on(int32_t x, int32_t y, int32_t z)
 {
     return z > 0 || (z == 0 && (y > 0 || (y == 0 && x > 0)));
 }
 
-/* Appends the later cells that are closer than so many edges, in the order of their slots. */
+/* Append the later cells within a radius, in edges, in the order of their slots. */
 static void append_cells(struct vicinity *vicinity, double radius)
 {
     const int32_t most = (int32_t)radius;
@@ -76,7 +76,7 @@ static void append_cells(struct vicinity *vicinity, double radius)
 enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, double radius)
 {
     const size_t width = 2 * (size_t)hops + 1, most = (size_t)radius;
-    /* of an octahedron */
+    /* points in an octahedron */
     const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3;
     const size_t n_cells = (most + 1) * (2 * most + 1) * (2 * most + 1);
     vicinity->hops = hops;

@@ -1,8 +1,8 @@
-"""The voxel solver from Python: NumPy arrays in, NumPy arrays out.
+"""Python binding of the voxel solver for NumPy arrays.
 
-Arrays over a canvas are indexed ``[x, y, z]``. Units are metre, second, kilogram, pascal and degree; phases
-are in cycles. The solver itself is the C library in ``libvox/``: it checks the values of all arguments,
-releases the GIL while it works, and keeps no state but memory to be used again, so threads may share a model.
+Arrays over a canvas are indexed ``[x, y, z]``. Units are meter, second, kilogram, pascal and degree; phases
+are in cycles. The solver is the C library in ``libvox/``. It checks the values of all arguments, releases the
+GIL during computation, and keeps no state except reusable memory, so that threads can share a model.
 """
 
 import itertools
@@ -45,32 +45,32 @@ def _kernels() -> Iterator[tuple[str, int]]:
 _NUMBERS: Final = dict(_kernels())
 
 KERNELS: Final = tuple(_NUMBERS)
-"""Names of what can compute on this processor, the fastest last. ``scalar`` is the reference, one
-bond after the other. The others are one program for several instruction sets, with the same bits."""
+"""Names of the kernels that this processor supports, the fastest last. ``scalar`` is the reference, which
+processes one bond after another. The others are compiled from one source and return the same bits."""
 
 VERSION: Final[str] = ffi.string(lib.vox_version()).decode()
-"""Version of the library; its second number rises with whatever changes its interface or a bit of the
+"""Version of the library; the second number increases with every change of the interface or of a bit of the
 results."""
 
 COMPILER: Final[str] = ffi.string(lib.vox_compiler()).decode()
-"""Name and version of the compiler that made the library."""
+"""Name and version of the compiler that built the library."""
 
 FIX_ALL: Final = 63
-"""All six degrees of freedom of a voxel: bits 1, 2, 4 for its position along x, y, z, and 8, 16, 32 for its
-rotation about them."""
+"""All six degrees of freedom of a voxel: bits 1, 2, 4 for translation along x, y, z, and 8, 16, 32 for
+rotation about these axes."""
 
 
 @attrs.frozen
 class Range:
-    """What a setting, or a property of a material, may be; ``x in range`` checks a number.
+    """Range of a setting or of a property of a material; ``x in range`` checks a number.
 
     Attributes:
-        lower: Lower bound, in the unit of the setting; ``-inf`` if there is none.
-        upper: Upper bound; ``inf`` if there is none.
-        lower_included: Whether the lower bound itself is allowed; never if it is infinite.
-        upper_included: Whether the upper bound itself is allowed.
-        whole: Whether only whole numbers are allowed.
-        words: What a number must be, such as ``above 0 and at most 1e9 s``.
+        lower: Lower bound, in the unit of the setting; ``-inf`` without a bound.
+        upper: Upper bound; ``inf`` without a bound.
+        lower_included: Whether the range includes the lower bound; never if it is infinite.
+        upper_included: Whether the range includes the upper bound.
+        whole: Whether numbers must be integers.
+        words: Description of the range, such as ``above 0 and at most 1e9 s``.
     """
 
     lower: float
@@ -87,7 +87,7 @@ class Range:
 
 
 def _ranges(nth: Callable[[int], Any]) -> Mapping[str, Range]:
-    """Return the ranges that the library lists, by the name of the field."""
+    """Return the ranges listed by the library: name of the field -> range."""
     ranges = {}
     for number in itertools.count():
         found = nth(number)
@@ -105,30 +105,30 @@ def _ranges(nth: Callable[[int], Any]) -> Mapping[str, Range]:
 
 
 SETTING_RANGES: Final = _ranges(lib.vox_setting_range)
-"""Range of each number in :class:`Settings`; numbers outside are refused when a model is made."""
+"""Range of each number in :class:`Settings`; :class:`Model` rejects numbers outside."""
 
 PROPERTY_RANGES: Final = _ranges(lib.vox_property_range)
 """Range of each number in :class:`Material`. An expansion must also be finite when multiplied by the
-temperature's amplitude."""
+temperature amplitude."""
 
 Track = Literal["tip", "face", "body", "voxels", "energy", "strain", "momentum"]
 
 
-_ROUNDING: Final = 1e-12  # relative; a time that is a multiple of the time step is met, not missed
+_ROUNDING: Final = 1e-12  # relative; tolerance for times that are multiples of the time step
 
 
 @attrs.frozen
 class Material:
-    """What a voxel is made of.
+    """Material of a voxel.
 
     Attributes:
-        youngs_modulus: Pa; 1e-6 to 1e18.
-        poisson_ratio: At least 0, below 0.5. It acts on the twist of bonds only.
-        density: kg/m3; 1e-6 to 1e18.
-        expansion: Linear thermal expansion per degree; 0 for a passive material, negative for one that
-            contracts when the others expand.
-        static_friction: Share of the floor's push up to which a voxel that rests on it sticks.
-        dynamic_friction: Share of the push that brakes a voxel which slides on the floor or on another.
+        youngs_modulus: Young's modulus, Pa; 1e-6 to 1e18.
+        poisson_ratio: Poisson's ratio, at least 0 and below 0.5; it affects only the twist of bonds.
+        density: Density, kg/m3; 1e-6 to 1e18.
+        expansion: Linear thermal expansion per degree; 0 for passive materials, negative for materials that
+            contract when others expand.
+        static_friction: Coefficient of static friction on the floor.
+        dynamic_friction: Coefficient of dynamic friction on the floor and between voxels.
     """
 
     youngs_modulus: float
@@ -141,46 +141,44 @@ class Material:
 
 @attrs.frozen(kw_only=True)
 class Settings:
-    """How bodies are simulated.
+    """Settings of a simulation.
 
     Attributes:
         voxel_size: Edge of the lattice, m.
-        duration: Simulated time, s; at most 1e9, as all times.
-        temperature_amplitude: Degrees, the base temperature already subtracted. A voxel's linear strain is
+        duration: Simulated time, s; at most 1e9, like all times.
+        temperature_amplitude: Amplitude above the base temperature, degrees. The linear strain of a voxel is
             ``expansion * temperature_amplitude * sin(2 pi (t / period + phase))``.
-        period: Of the actuation, s.
-        start_time: When the actuation begins, s; its clock runs from time 0 all the same, so that a voxel may
-            change its size with a jump.
-        ramp: Seconds from then until the actuation has its full amplitude, in proportion to time.
-        gravity: Acceleration along z, m/s2; negative pulls down.
-        floor: Whether there is one: the plane z = 0, or z = x tan(floor_slope). Its push is vertical all the
-            same.
-        floor_slope: Degrees, from -89 to 89.
-        fluid_drag: Half the density of the surrounding fluid times its drag coefficient, kg/m3. A facet of
-            the outer surface is pushed back with this times its area and the square of its normal speed.
-        time_step_fraction: Of the largest stable time step; above 0, at most 1.
-        substeps: How many steps each such time step is made in; the number of steps is a multiple of it.
+        period: Period of the actuation, s.
+        start_time: Start of the actuation, s; its phase still runs from time 0, so that sizes may jump.
+        ramp: Time over which the actuation grows linearly to its full amplitude, s.
+        gravity: Acceleration along z, m/s2; negative is down.
+        floor: Whether to add a floor: the plane z = x tan(floor_slope). Its normal force is always vertical.
+        floor_slope: Slope of the floor, degrees; -89 to 89.
+        fluid_drag: Half the density of the surrounding fluid times the drag coefficient, kg/m3. The drag on a
+            facet of the outer surface is this times its area and the square of its normal speed.
+        time_step_fraction: Time step as a fraction of the largest stable one; above 0, at most 1.
+        substeps: Number of steps in each such time step; the number of steps is a multiple of it.
         bond_damping: Damping of bonds, as a fraction of critical.
-        slow_damping: Damping of all motion against the ground, as a fraction of critical.
-        floor_damping: Damping of the floor's push, as a fraction of critical.
-        contact_damping: Damping of the push between voxels that touch, as a fraction of critical; none in the
-            original engine. It never does more than end the approach within one step.
+        slow_damping: Damping of all motion relative to the ground, as a fraction of critical.
+        floor_damping: Damping of the floor contact, as a fraction of critical.
+        contact_damping: Damping of contacts between voxels, as a fraction of critical; 0 in the original
+            engine. It is limited to the damping that stops the approach within one step.
         self_collision: Whether the voxels of a body repel each other.
-        contact_friction: Whether they brake each other too, with the mean of their dynamic frictions; the
-            original engine does not.
-        complete_contacts: Whether the list of possible contacts misses nothing. The original engine's may
-            come late: it goes by the size of one voxel of the two, and by what touching voxels would need.
-        collision_envelope: Voxels repel each other closer than this many of their mean sizes: 1.5 in the
-            original engine, 1 where they really touch; 1 to 2.
-        collision_horizon: Reach of the list of possible contacts, in voxel sizes; 1 to 4. The list is made
-            anew when the fastest voxel may have moved by more than ``(horizon - 1) / 2`` lattice edges.
-        collision_list_factor: The list leaves out voxels within ``floor(factor * horizon)`` bonds of each
-            other, and the original engine's what is beyond ``factor * horizon`` lattice edges; 1 to 2.
-        step_limit: A body that needs more steps is refused.
-        largest_strain: A body with a bond stretched or compressed by more than this many lattice edges has
-            diverged.
-        largest_distance: A body with a voxel further from its start than this many times the longest edge of
-            the canvas has diverged.
+        contact_friction: Whether contacts have friction, with the mean dynamic friction of both voxels; not
+            in the original engine.
+        complete_contacts: Whether the list of contact candidates is complete. In the original engine it may
+            be late, because its reach depends on the size of one of the two voxels and assumes that contacts
+            start when voxels touch.
+        collision_envelope: Distance at which repulsion starts, in mean voxel sizes: 1.5 in the original
+            engine, 1 for touching voxels; 1 to 2.
+        collision_horizon: Reach of the list of contact candidates, in voxel sizes; 1 to 4. The list is
+            rebuilt when the fastest voxel may have moved by more than ``(horizon - 1) / 2`` lattice edges.
+        collision_list_factor: The list excludes voxels within ``floor(factor * horizon)`` bonds of each
+            other, and the original engine's list those beyond ``factor * horizon`` lattice edges; 1 to 2.
+        step_limit: Maximum number of steps of a body.
+        largest_strain: Absolute strain of a bond beyond which a body has diverged.
+        largest_distance: Distance of a voxel from its start, in longest edges of the canvas, beyond which a
+            body has diverged.
     """
 
     voxel_size: float
@@ -212,15 +210,15 @@ class Settings:
 
 @attrs.frozen(eq=False)
 class Result:
-    """What became of a batch of bodies.
+    """Result of the simulation of a batch of bodies.
 
     Attributes:
-        tracks: What was asked for, NaN from the step at which a body diverged. Positions in m: ``tip`` (the
-            last occupied voxel in the order x fastest, then y, then z), ``face`` (the mass-weighted mean of
-            the voxels with the largest initial x) and ``body`` (that of all voxels) are ``float64[N, S, 3]``;
+        tracks: The requested tracks, NaN from the step at which a body diverged. Positions in m: ``tip`` (the
+            last voxel in the order x fastest, then y, then z), ``face`` (the mass-weighted mean of the voxels
+            with the largest initial x) and ``body`` (the mean of all voxels) are ``float64[N, S, 3]``;
             ``voxels`` is ``float64[N, S, X, Y, Z, 3]``, NaN in empty cells. ``energy`` is
             ``float64[N, S, 2]``, strain energy of the bonds and kinetic energy, J; ``strain`` is
-            ``float64[N, S, 2]``, the least and the greatest strain of the bonds; ``momentum`` is
+            ``float64[N, S, 2]``, smallest and largest strain of a bond; ``momentum`` is
             ``float64[N, S, 6]``, linear in kg m/s and angular about the origin in kg m2/s.
         diverged_step: ``int64[N]``; 0, or the step (from 1) at which the body diverged.
     """
@@ -230,27 +228,27 @@ class Result:
 
 
 class Model:
-    """A canvas with its materials, settings and fixed cells; read-only once made.
+    """A canvas with materials, settings and fixed cells; read-only after its creation.
 
     Args:
-        canvas: Cells along x, y and z.
-        palette: The material of each code that a cell may have, from 1 to 255. Code 0 is an empty cell.
-        settings: How bodies are simulated.
-        fixed: ``uint8[X, Y, Z]``, the degrees of freedom that a voxel has not, as bits (see ``FIX_ALL``).
-        kernel: Which of ``KERNELS`` computes. By default what the environment variable ``EVOFRAME_KERNEL``
-            names, or else the fastest.
-        whole_body: Whether all of a body is computed to the very end, even where no sample can tell. That
-            changes no bit of the results.
+        canvas: Number of cells along x, y and z.
+        palette: Code (1 to 255) -> material. Code 0 is an empty cell.
+        settings: Settings of the simulation.
+        fixed: Clamped degrees of freedom of each cell as bits, ``uint8[X, Y, Z]`` (see ``FIX_ALL``).
+        kernel: One of ``KERNELS``; by default that of the environment variable ``EVOFRAME_KERNEL``, or the
+            fastest.
+        whole_body: Whether to make the last step even if it has no effect on any sample. This changes no bit
+            of the results.
 
     Attributes:
-        kernel: The name of the kernel that computes, to be recorded with its results.
+        kernel: Name of the kernel, for the provenance of results.
 
     Raises:
-        ValueError: A setting or a material is out of its range, or an array has the wrong shape.
-        MemoryError: There is not enough memory.
+        ValueError: A setting or a material is out of range, or an array has the wrong shape.
+        MemoryError: Memory is insufficient.
     """
 
-    def __init__(  # noqa: PLR0913 - what a model is made of, and how it computes
+    def __init__(  # noqa: PLR0913 - parts of a model, and computation
         self,
         canvas: tuple[int, int, int],
         palette: Mapping[int, Material],
@@ -290,8 +288,8 @@ class Model:
             ``float64[N]`` in s, and ``int64[N]``.
 
         Raises:
-            ValueError: A body is empty, has an unknown material or no usable time step, or needs too many
-                steps; or the array has the wrong shape or type.
+            ValueError: A body is empty, has an unknown material, has no usable time step or requires too many
+                steps, or the array has the wrong shape or type.
         """
         cells = _cells("material", material, np.uint8, (-1, *self.canvas))
         n = len(cells)
@@ -311,14 +309,14 @@ class Model:
     def steps_at(
         self, material: ArrayLike, times: Sequence[float] | NDArray[np.float64]
     ) -> NDArray[np.int64]:
-        """Return the steps after which each body of a batch is first at or past given times.
+        """Return the first steps of each body of a batch that reach given times.
 
         Args:
             material: ``uint8[N, X, Y, Z]``, material codes.
-            times: ``float64[S]``, s, not negative and within the duration.
+            times: ``float64[S]``, s, from 0 to the duration.
 
         Returns:
-            ``int64[N, S]``, to be given to :meth:`simulate`; two times may fall in one step.
+            ``int64[N, S]``, for :meth:`simulate`; two times may result in the same step.
 
         Raises:
             ValueError: A time is beyond the simulation, or a body cannot be simulated.
@@ -327,7 +325,7 @@ class Model:
         outside = wanted[~((wanted >= 0.0) & (wanted <= self.settings.duration))]
         if outside.size:
             raise ValueError(
-                f"times must be from 0 to the duration {self.settings.duration} s, got {outside[0]}"
+                f"times must be between 0 and the duration {self.settings.duration} s, got {outside[0]}"
             )
         dt, _ = self.time_steps(material)
         return np.ceil(wanted / dt[:, None] * (1.0 - _ROUNDING)).astype(np.int64)
@@ -339,23 +337,23 @@ class Model:
         sample_steps: Sequence[int] | NDArray[np.int64],
         tracks: Iterable[Track] = get_args(Track),
     ) -> Result:
-        """Simulate a batch of bodies, each on its own and to the end of the duration.
+        """Simulate a batch of independent bodies to the end of the duration.
 
         Args:
             material: ``uint8[N, X, Y, Z]``, material codes.
-            phase_cycles: ``float64[N, X, Y, Z]``, phase lead of each voxel in cycles, at most 1e6 either way;
-                what stands at empty and passive cells does not matter.
-            sample_steps: ``int64[S]``, or ``int64[N, S]`` for each body its own; strictly ascending, the
-                steps after which samples are wanted (see :meth:`steps_at` for times). 0 is the initial state,
-                and no body may have fewer steps than its last.
-            tracks: What is wanted.
+            phase_cycles: ``float64[N, X, Y, Z]``, phase lead of each voxel in cycles, -1e6 to 1e6; ignored in
+                empty and passive cells.
+            sample_steps: ``int64[S]`` for all bodies or ``int64[N, S]`` for each body, strictly ascending:
+                steps after which to sample (see :meth:`steps_at` for times). 0 is the initial state; the last
+                value is at most the number of steps.
+            tracks: Names of the requested tracks.
 
         Returns:
-            The tracks that were asked for, and which bodies diverged.
+            The requested tracks, and the divergence of each body.
 
         Raises:
-            ValueError: An argument is out of its range or has the wrong shape or type; nothing was simulated.
-            MemoryError: There is not enough memory.
+            ValueError: An argument is out of range or has the wrong shape or type; nothing was simulated.
+            MemoryError: Memory is insufficient.
         """
         cells = _cells("material", material, np.uint8, (-1, *self.canvas))
         n = len(cells)
@@ -364,7 +362,7 @@ class Model:
         shapes = self._track_shapes(n, samples.shape[1])
         unknown = sorted(set(tracks := tuple(tracks)) - set(shapes))
         if unknown:
-            raise ValueError(f"unknown tracks {', '.join(unknown)}; there are {', '.join(shapes)}")
+            raise ValueError(f"unknown tracks {', '.join(unknown)}; tracks: {', '.join(shapes)}")
         out: dict[Track, NDArray[np.float64]] = {name: np.empty(shapes[name]) for name in tracks}
         diverged_step = np.empty(n, np.int64)
         culprit = ffi.new("int64_t *")
@@ -386,14 +384,14 @@ class Model:
         return Result(out, diverged_step)
 
     def _track_shapes(self, n: int, samples: int) -> dict[Track, tuple[int, ...]]:
-        """Return the shapes in which the solver writes."""
+        """Return the shapes of the arrays that the solver writes."""
         point, two = (n, samples, 3), (n, samples, 2)
         voxels = (n, samples, *self.canvas[::-1], 3)
         points: dict[Track, tuple[int, ...]] = {"tip": point, "face": point, "body": point, "voxels": voxels}
         return points | {"energy": two, "strain": two, "momentum": (n, samples, 6)}
 
     def _model_error(self, status: int, culprit: int) -> Exception:
-        """Return the error for a model that could not be made, with the value that was given."""
+        """Return the error for a model that could not be created, with the invalid value."""
         field = ffi.typeof("enum vox_status").elements[status].removeprefix("VOX_BAD_").lower()
         if field == "canvas":
             return _error(status, f", got {self.canvas}")
@@ -427,7 +425,7 @@ def _settings_fields(canvas: tuple[int, int, int], settings: Settings) -> dict[s
 
 
 def _palette_entries(palette: Mapping[int, Material]) -> Any:
-    """Return the palette as the solver wants it: indexed by code."""
+    """Return the palette for the solver, indexed by code."""
     entries = ffi.new("struct vox_material[]", lib.VOX_MAX_CODES)
     for code, material in palette.items():
         if not 0 < code < lib.VOX_MAX_CODES:
@@ -437,7 +435,7 @@ def _palette_entries(palette: Mapping[int, Material]) -> Any:
 
 
 def _array(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[int, ...]) -> NDArray[Any]:
-    """Return an array of a type, if that holds all its values exactly, and of a shape (-1: any length)."""
+    """Convert values to a type that holds them exactly, and check the shape (-1: any length)."""
     array = np.asarray(values)
     wanted = np.dtype(dtype)
     if array.size and (array.dtype == np.bool_ or not np.can_cast(array.dtype, wanted)):
@@ -450,18 +448,18 @@ def _array(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[i
 
 
 def _cells(name: str, values: ArrayLike, dtype: type[np.generic], shape: tuple[int, ...]) -> NDArray[Any]:
-    """Return an array over cells in the solver's order: x fastest, then y, then z."""
+    """Convert an array over cells to the order of the solver: x fastest, then y, then z."""
     array = _array(name, values, dtype, shape)
-    return np.array(array.swapaxes(-1, -3), order="C")  # a copy, which nobody changes after it was checked
+    return np.array(array.swapaxes(-1, -3), order="C")  # a copy, so that checked values cannot change
 
 
 def _error(status: int, detail: str) -> Exception:
-    """Return the error that a status stands for."""
+    """Return the exception for a status."""
     message = ffi.string(lib.vox_status_message(status)).decode() + detail
     return MemoryError(message) if status == lib.VOX_NO_MEMORY else ValueError(message)
 
 
 def _check_batch(status: int, culprit: int) -> None:
-    """Raise what is wrong with a batch, if anything, naming the body."""
+    """Raise the error for a batch, with the index of the body, unless the status is OK."""
     if status != lib.VOX_OK:
         raise _error(status, f" (body {culprit})" if culprit >= 0 else "")

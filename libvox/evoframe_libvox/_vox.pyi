@@ -1,4 +1,4 @@
-# The extension that extensions.py makes of libvox/include/vox.h.
+# The extension that extensions.py builds from libvox/include/vox.h.
 from typing import Any
 
 ffi: Any

@@ -1,13 +1,13 @@
 /* vox: a soft-body solver for voxels on a lattice.
  *
  * A model (canvas, settings, materials, fixed cells) is created once and is read-only afterwards,
- * so any number of threads may use one at the same time. A call takes a batch of bodies and writes
- * into the caller's buffers. Nothing is printed, no state is global, and no input is trusted: every
- * call checks its arguments before it simulates anything and says what is wrong with a status. A
- * body takes memory for its bounding box: some 600 bytes for each cell, 1000 if its materials
- * differ, and more for contacts. A model keeps up to eight bodies' memory for later calls.
+ * so any number of threads may use it at the same time. A call takes a batch of bodies and writes
+ * into the caller's buffers. The library prints nothing, has no global state and trusts no input:
+ * every call checks its arguments before simulating and returns a status. A body requires memory
+ * for its bounding box: about 600 bytes per cell, 1000 if its materials differ, and more for
+ * contacts. A model keeps the memory of up to eight bodies for later calls.
  *
- * Units: metre, second, kilogram, pascal, degree; phases in cycles. Arrays over cells have x
+ * Units: meter, second, kilogram, pascal, degree; phases in cycles. Arrays over cells have x
  * fastest, then y, then z, and a batch is body after body.
  *
  * This header is read by the C compiler and, without its directive lines, by cffi. For C++, include
@@ -18,23 +18,23 @@
 
 #include <stdint.h>
 
-/* The one place where the version of this library stands. Its second number rises with whatever
- * changes the interface or a bit of the results, its third with all else. */
+/* Version of this library. The second number increases with every change of the interface or of a
+ * bit of the results, the third with all other changes. */
 #define VOX_VERSION "0.1.0"
 
-/* Largest sizes that a model accepts. */
+/* Maximum sizes of a model. */
 enum {
     VOX_MAX_CELLS = 16777216, /* nx * ny * nz */
-    VOX_MAX_CODES = 256       /* material codes, the code 0 (empty) included */
+    VOX_MAX_CODES = 256       /* material codes, including 0 (empty) */
 };
 
-/* What a call has to say. In brackets: what `culprit` is then (-1 if the fault is not one
- * item's). */
+/* Result of a call. Brackets contain the meaning of `culprit`, which is -1 if no single item is at
+ * fault. */
 enum vox_status {
     VOX_OK = 0,
     VOX_NO_MEMORY,
     VOX_NULL_ARGUMENT,
-    /* the settings; each is named after its field */
+    /* settings; each is named after its field */
     VOX_BAD_CANVAS,
     VOX_BAD_VOXEL_SIZE,
     VOX_BAD_TIME_STEP_FRACTION,
@@ -58,7 +58,7 @@ enum vox_status {
     VOX_BAD_KERNEL,
     VOX_BAD_LARGEST_STRAIN,
     VOX_BAD_LARGEST_DISTANCE,
-    /* the palette [material code] */
+    /* palette [material code] */
     VOX_BAD_PALETTE,
     VOX_BAD_YOUNGS_MODULUS,
     VOX_BAD_POISSON_RATIO,
@@ -66,9 +66,9 @@ enum vox_status {
     VOX_BAD_EXPANSION,
     VOX_BAD_STATIC_FRICTION,
     VOX_BAD_DYNAMIC_FRICTION,
-    /* the fixed cells [cell] */
+    /* fixed cells [cell] */
     VOX_BAD_FIXED,
-    /* a batch [body] */
+    /* batch [body] */
     VOX_BAD_BATCH,
     VOX_UNKNOWN_MATERIAL,
     VOX_EMPTY_BODY,
@@ -79,8 +79,8 @@ enum vox_status {
     VOX_SAMPLE_OUT_OF_RANGE
 };
 
-/* Degrees of freedom of a voxel that are held, as bits: coordinates, and rotations about the axes
- * of the world, which nothing then sets going. */
+/* Clamped degrees of freedom of a voxel as bits: translation along, and rotation about, the axes of
+ * the world. A clamped rotation receives no torque. */
 enum {
     VOX_FIX_X = 1,
     VOX_FIX_Y = 2,
@@ -88,79 +88,77 @@ enum {
     VOX_FIX_ROTATION_X = 8,
     VOX_FIX_ROTATION_Y = 16,
     VOX_FIX_ROTATION_Z = 32,
-    VOX_FIX_ALL = 63 /* such a voxel stays where and as it is, but its size follows the actuation */
+    VOX_FIX_ALL = 63 /* the voxel does not move, but its size follows the actuation */
 };
 
 struct vox_settings {
     int64_t nx, ny, nz; /* cells along each axis, each > 0 */
     double voxel_size;  /* lattice edge, m; 1e-6 .. 1e6 */
     /* time */
-    double time_step_fraction; /* of the largest stable time step; 0 < . <= 1 */
-    int64_t substeps;          /* each such step is made in so many; 1 .. 1000 */
+    double time_step_fraction; /* time step / largest stable one; 0 < . <= 1 */
+    int64_t substeps;          /* steps in each such step; 1 .. 1000 */
     double duration;           /* simulated time, s; 0 < . <= 1e9 */
-    int64_t step_limit;        /* a body that needs more steps is refused; >= 1 */
-    /* actuation: expansion * temperature_amplitude * sin(2 pi (t / period + phase)) is the strain
-     * of a voxel */
-    double temperature_amplitude; /* degrees, the base temperature already subtracted */
+    int64_t step_limit;        /* maximum number of steps of a body; >= 1 */
+    /* actuation: strain = expansion * temperature_amplitude * sin(2 pi (t / period + phase)) */
+    double temperature_amplitude; /* degrees above the base temperature */
     double period;                /* s; 1e-9 .. 1e9 */
-    double start_time;            /* s; 0 .. 1e9; the sine runs from time 0 all the same */
-    double ramp;                  /* s from the start to the full amplitude; 0 .. 1e9 */
-    /* surroundings */
+    double start_time;            /* s; 0 .. 1e9; the phase still runs from time 0 */
+    double ramp;                  /* s, from the start to full amplitude; 0 .. 1e9 */
+    /* environment */
     double gravity;     /* acceleration along z, m/s2; negative is down */
-    int32_t floor;      /* 0: there is none; else the plane z = x tan(floor_slope) */
-    double floor_slope; /* angular degrees; -89 .. 89; tilts the plane, but not its push */
-    double fluid_drag;  /* kg/m3, half the fluid's density times the drag coefficient; >= 0 */
+    int32_t floor;      /* 0: none; else the plane z = x tan(floor_slope) */
+    double floor_slope; /* angular degrees; -89 .. 89; the normal force stays vertical */
+    double fluid_drag;  /* kg/m3, half the fluid's density times drag coefficient; >= 0 */
     /* damping, each as a fraction of critical */
     double bond_damping;    /* >= 0 */
-    double slow_damping;    /* against the ground, of all motion; >= 0 */
+    double slow_damping;    /* of all motion relative to the ground; >= 0 */
     double floor_damping;   /* >= 0 */
-    double contact_damping; /* of voxels that touch, as far as a step can bear it; >= 0 */
+    double contact_damping; /* of contacts, limited to what is stable; >= 0 */
     /* contact between voxels */
-    int32_t self_collision;       /* 0: bodies pass through themselves */
-    int32_t contact_friction;     /* 0: without; else with the mean of both dynamic frictions */
-    int32_t complete_contacts;    /* 0: the original engine's list of possible contacts, which may
-                                     come late; else one that misses nothing */
-    double collision_envelope;    /* voxels touch at this many of their mean sizes; 1 .. 2 */
-    double collision_horizon;     /* reach of the list of possible contacts, in voxel sizes; 1 .. 4.
-                                     It is made anew when the fastest voxel may have moved by
+    int32_t self_collision;       /* 0: voxels pass through each other */
+    int32_t contact_friction;     /* 0: none; else the mean of both dynamic frictions */
+    int32_t complete_contacts;    /* 0: the original engine's list of contact candidates, which may
+                                     be late; else a complete list */
+    double collision_envelope;    /* distance of contact, in mean sizes; 1 .. 2 */
+    double collision_horizon;     /* reach of the candidate list, in voxel sizes; 1 .. 4. It is
+                                     rebuilt when the fastest voxel may have moved by
                                      (horizon - 1) / 2 lattice edges */
-    double collision_list_factor; /* the list leaves out voxels within floor(factor * horizon) bonds
-                                     of each other, and the original engine's what is beyond
-                                     factor * horizon edges; 1 .. 2 */
-    /* what computes; all kernels but the scalar one give the same bits, that one the same but for
-     * roundings */
-    int32_t kernel;     /* 0: the fastest that this processor can use; else a number of
+    double collision_list_factor; /* the list excludes voxels within floor(factor * horizon) bonds
+                                     of each other; the original engine's also excludes those
+                                     beyond factor * horizon edges; 1 .. 2 */
+    /* computation; all kernels except the scalar one return the same bits, the scalar one differs
+     * by rounding */
+    int32_t kernel;     /* 0: the fastest for this processor; else a number of
                            vox_kernel_name */
-    int32_t whole_body; /* 0: leaves out what no sample can tell, which changes no bit */
-    /* what counts as diverged */
-    double largest_strain;   /* of a bond, either way; 0 < . <= 1e9 */
+    int32_t whole_body; /* 0: skip steps without effect on samples; changes no bit */
+    /* divergence */
+    double largest_strain;   /* absolute, of a bond; 0 < . <= 1e9 */
     double largest_distance; /* of a voxel from its start, in longest edges of the canvas;
                                 0 < . <= 1e9 */
 };
 
-/* One entry of a palette. The index in the palette is the material code; code 0 is an empty
- * cell. */
+/* Entry of a palette. Its index is the material code; code 0 is an empty cell. */
 struct vox_material {
-    int32_t used;            /* 0: no cell may have this code, and the other fields are ignored */
+    int32_t used;            /* 0: invalid code, the other fields are ignored */
     double youngs_modulus;   /* Pa; 1e-6 .. 1e18 */
     double poisson_ratio;    /* 0 <= . < 0.5 */
     double density;          /* kg/m3; 1e-6 .. 1e18 */
-    double expansion;        /* linear, per degree; negative contracts when hot */
+    double expansion;        /* linear, per degree; negative: contracts when hot */
     double static_friction;  /* >= 0 */
     double dynamic_friction; /* >= 0 */
 };
 
-/* Where to write the tracks of a batch; NULL for a track that is not wanted. NaN from the sample at
- * which a body diverged. With S = n_samples: */
+/* Buffers for the tracks of a batch; NULL omits a track. Values are NaN from the sample at which a
+ * body diverged. With S = n_samples: */
 struct vox_tracks {
-    double *tip;      /* [n_bodies][S][3] m, the last occupied voxel in cell order */
+    double *tip;      /* [n_bodies][S][3] m, the last voxel in cell order */
     double *face;     /* [n_bodies][S][3] m, mass-weighted mean of the voxels with the largest
                          initial x */
     double *body;     /* [n_bodies][S][3] m, mass-weighted mean of all voxels */
     double *voxels;   /* [n_bodies][S][cells][3] m, every voxel, NaN in empty cells */
-    double *energy;   /* [n_bodies][S][2] J, strain energy of the bonds, and kinetic energy */
-    double *strain;   /* [n_bodies][S][2] least and greatest strain of the bonds (of lattice
-                         edges), 0 without */
+    double *energy;   /* [n_bodies][S][2] J, strain energy of the bonds and kinetic energy */
+    double *strain;   /* [n_bodies][S][2] smallest and largest strain of a bond, relative to
+                         the lattice edge; 0 without bonds */
     double *momentum; /* [n_bodies][S][6] kg m/s, and kg m2/s about the origin */
 };
 
@@ -168,15 +166,15 @@ typedef struct vox_model vox_model;
 
 /* Create a model.
  *
- * `palette` has n_codes entries (1 .. VOX_MAX_CODES). `fixed` has nx*ny*nz entries, the bits of the
- * degrees of freedom that a voxel there has not; NULL fixes nothing. Both are copied. *model is
- * NULL unless VOX_OK is returned. `culprit` may be NULL.
+ * `palette` has n_codes entries (1 .. VOX_MAX_CODES). `fixed` has nx*ny*nz entries, the clamped
+ * degrees of freedom of the voxel in a cell as bits; NULL clamps nothing. Both are copied. *model
+ * is NULL unless VOX_OK is returned. `culprit` may be NULL.
  */
 enum vox_status vox_model_create(const struct vox_settings *settings,
                                  const struct vox_material *palette, int32_t n_codes,
                                  const uint8_t *fixed, vox_model **model, int64_t *culprit);
 
-void vox_model_destroy(vox_model *model); /* NULL is fine */
+void vox_model_destroy(vox_model *model); /* NULL is allowed */
 
 /* Time step (s) and number of steps of each body: (floor(duration / (substeps * dt)) + 1) *
  * substeps. `dt` or `steps` may be NULL. */
@@ -186,54 +184,52 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
 /* Simulate a batch to the end of the duration.
  *
  * material      [n_bodies][cells] material codes
- * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, at most 1e6 either
- *               way; of no matter where the material does not expand
+ * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, -1e6 .. 1e6;
+ *               ignored for materials that do not expand
  * sample_steps  [n_bodies][n_samples] strictly ascending for each body; 0 is the initial state, k
  *               the state after k steps; at most the number of its steps
- * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: a NaN, or a distance
- *               beyond the settings that the step led to; a strain beyond the settings, or twice as
- *               many possible contacts as a lattice without gaps has, that the step began with.
- *               Such a body stops; the others do not notice.
+ * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: the step resulted in
+ *               a NaN or in a distance beyond largest_distance, or it started with a strain beyond
+ *               largest_strain or with twice as many contact candidates as in a lattice without
+ *               gaps. Such a body stops; the others are not affected.
  *
- * What is refused leaves all buffers as they were, except that memory may run out in the middle of
- * a batch.
+ * A call that fails leaves all buffers unchanged, unless memory runs out in the middle of a batch.
  *
- * The results of a body depend on nothing else in the batch, nor on which samples and tracks are
- * asked for.
+ * The results of a body do not depend on the other bodies in the batch, or on the requested samples
+ * and tracks.
  */
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples,
                              const int64_t *sample_steps, const struct vox_tracks *tracks,
                              int64_t *diverged_step, int64_t *culprit);
 
-/* What a setting, or a property of a material, may be. */
+/* Range of a setting, or of a property of a material. */
 struct vox_range {
     const char *name;       /* the field of struct vox_settings or struct vox_material */
-    enum vox_status status; /* of any other number */
+    enum vox_status status; /* of numbers outside the range */
     int32_t whole;          /* 0: the field is a double; else an int64_t */
-    double lower, upper;    /* in the unit of the field; infinite if there is no bound */
-    int32_t lower_included, upper_included; /* 0: the number must not be the bound itself */
-    const char *words; /* what stands after "must be " in the message of the status */
+    double lower, upper;    /* in the unit of the field; infinite: no bound */
+    int32_t lower_included, upper_included; /* 0: excludes the bound */
+    const char *words;                      /* text after "must be " in the message of the status */
 };
 
-/* Ranges of the settings but for canvas, switches and kernel, and of the properties of a material,
- * from number 0 up; NULL after the last. An expansion must also be finite when multiplied by the
- * temperature's amplitude. */
+/* Ranges of the settings (except canvas, switches and kernel) and of the properties of a material,
+ * numbered from 0; NULL after the last. An expansion must also be finite when multiplied by the
+ * temperature amplitude. */
 const struct vox_range *vox_setting_range(int32_t number);
 const struct vox_range *vox_property_range(int32_t number);
 
-/* Name of a kernel, from number 1 up, the fastest last: empty if this processor cannot use it, NULL
- * after the last. */
+/* Name of a kernel, numbered from 1, the fastest last: empty if this processor does not support it,
+ * NULL after the last. */
 const char *vox_kernel_name(int32_t number);
 
-/* VOX_VERSION of the library that is linked, which may not be the one of this header; never
- * NULL. */
+/* VOX_VERSION of the linked library, which may differ from the one in this header; never NULL. */
 const char *vox_version(void);
 
-/* Name and version of the compiler that made this library; never NULL. */
+/* Name and version of the compiler that built this library; never NULL. */
 const char *vox_compiler(void);
 
-/* A sentence without a full stop; never NULL. */
+/* Description of a status, a sentence without a period; never NULL. */
 const char *vox_status_message(enum vox_status status);
 
 #endif

@@ -1,5 +1,5 @@
-/* A vector seen in axes of which a bond's own is the first, and back. In loops the axis is a
- * constant. */
+/* Transformation of a vector to axes of which the bond's own is the first, and back. In loops the
+ * axis is a constant. */
 #ifndef VOX_AXES_H
 #define VOX_AXES_H
 

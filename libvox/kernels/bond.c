@@ -1,22 +1,20 @@
-/* The bond law: a beam between two voxels, in one of two frames, with a damper (sections 5 and
- * 6). */
+/* The bond law: a damped beam between two voxels, in one of two frames (sections 5 and 6). */
 #include "axes.h"
 #include "internal.h"
 
-/* Rotation vector of a rotation. The engine's formulas: within 5.6 degrees the chord counts as the
- * arc. */
+/* Rotation vector of a rotation. As in the engine, the chord replaces the arc below 5.6 degrees. */
 static struct vec rotation_vector(struct quat q)
 {
     const double w = q.w > 1.0 ? 1.0 : q.w;
     const double sine2 = 1.0 - w * w;
-    if (sine2 <= 0.0) return (struct vec){0.0, 0.0, 0.0}; /* a NaN goes on, to be found */
+    if (sine2 <= 0.0) return (struct vec){0.0, 0.0, 0.0}; /* NaN propagates, and is detected */
     const double k = w > COSINE_OF_SMALL_ROTATION ? 2.0 * sqrt((2.0 - 2.0 * w) / sine2)
                                                   : 2.0 * acos(w) / sqrt(sine2);
     return vec_scale(k, (struct vec){q.x, q.y, q.z});
 }
 
-/* The rotation that takes a direction onto +x. The small-angle form is not quite a unit quaternion,
- * and a bond turned inside out, close to -x, takes it too: both as in the engine. */
+/* The rotation of a direction onto +x. As in the engine, the small-angle form is not exactly a unit
+ * quaternion and is also used for inverted bonds, close to -x. */
 static struct quat rotation_onto_x(struct vec u, double length)
 {
     if (fabs(u.y / u.x) < SLOPE_OF_SMALL_TURN && fabs(u.z / u.x) < SLOPE_OF_SMALL_TURN) {
@@ -37,19 +35,18 @@ static bool next_frame_is_small(bool small, double turn_cosine, struct vec u, do
     return turn_cosine > SMALL_COSINE && turn < SMALL_TURN && extension < SMALL_EXTENSION;
 }
 
-/* How a bond is deformed, or how fast: of its upper end against its lower, and the rotation of both
- * ends. */
+/* Deformation of a bond, or its rate: displacement of the upper end relative to the lower one, and
+ * rotation of both ends. */
 struct deformation {
     struct vec stretch, turn_lower, turn_upper;
 };
 
-/* Force on the lower end (the upper gets its opposite) and moments of both ends, in the bond's
- * frame. */
+/* Forces on, and moments of, both ends in the bond's frame. */
 struct wrench {
     struct vec force_lower, force_upper, moment_lower, moment_upper;
 };
 
-/* The last deformation of the bond in a slot; its lower end never turns about the bond. */
+/* Return the previous deformation of a bond; its lower end never turns about the bond. */
 IN_LOOP struct deformation last_of(const struct bonds *bonds, int64_t slot)
 {
     return (struct deformation){
@@ -97,7 +94,7 @@ IN_LOOP struct wrench spring(const struct coupling *c, struct deformation d)
     };
 }
 
-/* Each end is damped with its own constants. */
+/* Damping force on an end, with the constants of that end. */
 static struct vec damping_force(const struct damper *c, struct deformation rate)
 {
     const struct vec v = rate.stretch, a = rate.turn_lower, b = rate.turn_upper;
@@ -108,7 +105,7 @@ static struct vec damping_force(const struct damper *c, struct deformation rate)
     };
 }
 
-/* Moment on the end that turns at `own` while the other turns at `other`. */
+/* Damping moment on an end with rotation rate `own`; the other end has the rate `other`. */
 static struct vec damping_moment(const struct damper *c, struct vec v, struct vec own,
                                  struct vec other)
 {
@@ -128,7 +125,7 @@ IN_LOOP void add_damping(struct wrench *wrench, const struct coupling *c, struct
     wrench->moment_upper = vec_add(wrench->moment_upper, damping_moment(&c->upper, v, b, a));
 }
 
-/* Adds one end's force and moment, given in the bond's frame, to a voxel. */
+/* Add the force and moment of an end, given in the bond's frame, to a voxel. */
 IN_LOOP void load(const struct voxels *v, int64_t slot, enum axis axis, struct quat frame,
                   struct vec force, struct vec moment)
 {
@@ -138,10 +135,10 @@ IN_LOOP void load(const struct voxels *v, int64_t slot, enum axis axis, struct q
             vec_sub(vec_at(v->torque, slot), quat_rotate(frame, x_to_axis(axis, moment))));
 }
 
-/* How a bond is deformed now. */
+/* Current deformation of a bond. */
 struct pose {
     struct deformation deformation;
-    struct quat frame; /* takes the bond's frame, in the world's axes, to the world */
+    struct quat frame; /* rotation from the bond's frame, in axes of the world, to the world */
     bool small;
 };
 
@@ -172,7 +169,7 @@ IN_LOOP struct pose pose_of(const struct voxels *v, enum axis axis, int64_t lowe
     return (struct pose){large, frame, false};
 }
 
-/* False if the bond is stretched or compressed by more than `most`, or by a NaN. */
+/* Return false if the bond is stretched or compressed by more than `most`, or by NaN. */
 IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, double most,
                         double per_second)
 {
@@ -184,7 +181,7 @@ IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, 
     const struct deformation *now = &pose.deformation;
 
     struct wrench wrench = spring(coupling, *now);
-    /* a change of frame leaves the history, from which the next rates come */
+    /* a change of frame keeps the history for the next rates */
     if (pose.small == small) {
         add_damping(&wrench, coupling, rate_of(*now, last_of(bonds, lower), per_second));
         keep(bonds, lower, *now);
@@ -195,7 +192,7 @@ IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, 
     return fabs(now->stretch.x) <= most;
 }
 
-/* The axis is a constant in each loop. */
+/* The axis is a constant in each call. */
 IN_LOOP bool bonds_along(const struct body *body, enum axis axis, double most, double per_second)
 {
     const struct bonds *bonds = &body->bonds[axis];
@@ -215,7 +212,7 @@ bool vox_scalar_bonds_apply(struct body *body, double per_second)
     return fine;
 }
 
-/* The energy of which the spring's forces and moments are the derivatives. */
+/* The potential of the spring's forces and moments. */
 static double spring_energy(const struct coupling *c, struct deformation d)
 {
     const struct vec p = d.stretch, a = d.turn_lower, b = d.turn_upper;

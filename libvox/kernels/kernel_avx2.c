@@ -1,5 +1,5 @@
-/* The fast kernel with AVX2 instructions, where compiler and processor know them. */
-#include "for_vectors.h" /* first: what it says holds for all that follows */
+/* The fast kernel with AVX2 instructions, if compiler and processor support them. */
+#include "for_vectors.h" /* first: it affects everything below */
 
 #include "internal.h"
 

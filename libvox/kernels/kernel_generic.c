@@ -1,5 +1,5 @@
-/* The fast kernel with the instructions that every processor of the target has. */
-#include "for_vectors.h" /* first: what it says holds for all that follows */
+/* The fast kernel with the instructions of every processor of the target. */
+#include "for_vectors.h" /* first: it affects everything below */
 
 #define VECTOR(name) generic_##name
 

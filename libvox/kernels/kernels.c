@@ -1,4 +1,4 @@
-/* The kernels, and which of them this processor can use. */
+/* The kernels, and their support by this processor. */
 #include "internal.h"
 
 static const struct kernel scalar_kernel = {"scalar", NULL, vox_scalar_bonds_apply,

@@ -1,25 +1,24 @@
-/* Mathematics for loops that the compiler turns into vector instructions: neither branches nor
- * calls. Each function is within 2 units in the last place, and gives the same bits with every
- * instruction set. */
+/* Mathematical functions for vectorized loops, without branches and calls. Each is accurate to 2
+ * units in the last place and returns the same bits with every instruction set. */
 #ifndef VOX_LANES_H
 #define VOX_LANES_H
 
 #include "internal.h"
 
-/* On all processors at hand a choice, not a jump. */
+/* Compiled to a selection, not to a jump. */
 IN_LOOP double choose(bool first, double a, double b)
 {
     return first ? a : b;
 }
 
-/* 1 / sqrt(1 - x/2) for x from 0 to 0.0012: its power series, as far as it changes a digit. */
+/* 1 / sqrt(1 - x/2) for x from 0 to 0.0012: the power series, to double precision. */
 IN_LOOP double inverse_root_of_half(double x)
 {
     return 1.0 + x * (1.0 / 4 + x * (3.0 / 32 + x * (5.0 / 128 + x * (35.0 / 2048))));
 }
 
-/* asin(sqrt(y)) / sqrt(y) for y from 0 to 1/4: the polynomial of its degree with the least error,
- * 1.7e-17. */
+/* asin(sqrt(y)) / sqrt(y) for y from 0 to 1/4: the polynomial of this degree with the smallest
+ * error, 1.7e-17. */
 IN_LOOP double arcsine_ratio(double y)
 {
     const double high =
@@ -32,10 +31,10 @@ IN_LOOP double arcsine_ratio(double y)
     return 1.0 + y * (0.16666666666664942 + y * (0.07500000000385201 + y * low));
 }
 
-/* acos(w) for w from -1 to 1, by the nearer of asin's two ends. */
+/* acos(w) for w from -1 to 1, from asin near 0 or near the closer end. */
 IN_LOOP double arccosine(double w)
 {
-    /* their sum is pi / 2 */
+    /* the sum of both is pi / 2 */
     const double half_pi = 1.5707963267948966, beyond = 6.123233995736766e-17;
     const double size = fabs(w), chord2 = 0.5 - 0.5 * size;
     const bool near_end = size >= 0.5;
@@ -45,18 +44,18 @@ IN_LOOP double arccosine(double w)
     return choose(near_end, end, half_pi - (a - beyond));
 }
 
-/* sin(x): within 2 units in the last place up to 1e6 or so; beyond, x itself is no more exact. */
+/* sin(x): accurate to 2 units in the last place up to about 1e6; larger x are not exact anyway. */
 IN_LOOP double sine(double x)
 {
-    /* 1.5 * 2^52: what is added to it is rounded to a whole number */
+    /* 1.5 * 2^52: adding it rounds to an integer */
     const double whole = 6755399441055744.0;
-    /* pi in three parts, of which two have 33 bits each: their products with n are exact */
+    /* pi in three parts; the first two have 33 bits each, so their products with n are exact */
     const double first = 3.1415926534682512, second = 1.2154201012607932e-10,
                  third = 4.044532497591901e-21;
     const double n = (x * 0.3183098861837907 + whole) - whole, half = 0.5 * n;
     const bool odd = (half + whole) - whole != half;
     const double near = ((x - n * first) - n * second) - n * third;
-    /* other if x is beyond all sense */
+    /* false only for absurdly large x */
     const double r = choose(fabs(near) <= 1.6, near, 0.0), y = r * r;
     const double high =
         1.0 / 6227020800.0 +
@@ -71,7 +70,7 @@ IN_LOOP double sine(double x)
     return choose(odd, -sine, sine);
 }
 
-/* cos(x), likewise; the sum is exact enough, since x is no more so. */
+/* cos(x), as accurate as the rounding of x allows. */
 IN_LOOP double cosine(double x)
 {
     return sine(x + 1.5707963267948966);

@@ -1,7 +1,7 @@
-/* How a voxel moves and how its size follows the actuation (sections 4, 7 and 8). */
+/* Motion of voxels, and actuation of their sizes (sections 4, 7 and 8). */
 #include "internal.h"
 
-/* Share of the time until the start in which a size takes to the rounded edge. */
+/* Fraction of the time until the start in which a size changes to the rounded edge. */
 static const double SETTLING = 0.5;
 
 struct actuation vox_actuation_at(const vox_model *model, double time)
@@ -18,7 +18,7 @@ struct actuation vox_actuation_at(const vox_model *model, double time)
     return a;
 }
 
-/* A size beyond the limits leaves the old one as it is. */
+/* Return the new size, or the previous one if the new size is beyond the limits. */
 static double size_of(const struct actuation *a, double amplitude, double phase, double last)
 {
     if (a->gain == 0.0 || amplitude == 0.0) return a->edge * a->rest;
@@ -59,8 +59,7 @@ static void hold_coordinate(double *position, double *momentum, double start)
     *momentum = 0.0;
 }
 
-/* A voxel keeps the coordinates that it is not free to change, and its orientation if it may turn
- * about no axis. */
+/* Restore the clamped coordinates of a voxel, and its orientation if all rotations are clamped. */
 static void hold(const struct voxels *v, int64_t i)
 {
     const unsigned rotation = VOX_FIX_ROTATION_X | VOX_FIX_ROTATION_Y | VOX_FIX_ROTATION_Z,
@@ -85,7 +84,7 @@ static double larger(double a, double b)
     return b > a ? b : a;
 }
 
-/* Semi-implicit Euler: the new momentum moves the voxel. */
+/* Semi-implicit Euler step: the new momentum determines the position. */
 static bool voxel_move(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
@@ -104,7 +103,7 @@ static bool voxel_move(struct body *body, int64_t slot)
            isfinite(vec_dot(spin, spin) * v->turnability[slot]);
 }
 
-/* The floor comes last, since friction looks at all other forces. */
+/* The floor is last, because friction depends on all other forces. */
 bool vox_voxel_advance(struct body *body, int64_t slot)
 {
     vox_voxel_load(body, slot);

@@ -1,8 +1,8 @@
-/* The bond law (sections 5 and 6) of the fast kernel: see vector_kernel.h, which includes this. */
+/* The bond law (sections 5 and 6) of the fast kernel; included by vector_kernel.h. */
 
 /* ---- rotations ------------------------------------------------------------------------------- */
 
-/* A rotation as a matrix: cheaper than its quaternion where it turns several vectors. */
+/* A rotation as a matrix: cheaper than a quaternion for several vectors. */
 struct matrix {
     struct vec x, y, z; /* rows */
 };
@@ -34,20 +34,20 @@ IN_LOOP struct vec turn_back(const struct matrix *m, struct vec v)
     };
 }
 
-/* ---- how bonds are deformed ------------------------------------------------------------------ */
+/* ---- deformation of bonds -------------------------------------------------------------------- */
 
-/* What the bonds of a tile look like, each in its own frame. */
+/* Deformations of the bonds of a tile, each in its own frame. */
 struct sight {
-    lanes stretch[3];  /* m; before the frame is known, the upper end seen from the lower */
-    lanes relative[4]; /* quaternion, of the upper end against the frame */
-    lanes onto[3]; /* w, y, z of the rotation that takes the bond onto x; only where a bond is in
-                      the large frame */
-    lanes rest;    /* m */
-    lanes small;   /* 1 or 0, the frame of this step */
+    lanes stretch[3];  /* m; before `straighten`, position of the upper end relative to the lower */
+    lanes relative[4]; /* quaternion of the upper end relative to the frame */
+    lanes onto[3];     /* w, y, z of the rotation of the bond onto x; only if a bond is in the large
+                          frame */
+    lanes rest;        /* m */
+    lanes small;       /* 1 or 0, the frame of this step */
 } IN_LINES;
 
-/* Orientations of the voxels in a tile as matrices, row after row: the lower ends' of its bonds
- * along all axes. */
+/* Orientations of the voxels in a tile as matrices, row by row: the lower ends of its bonds along
+ * all axes. */
 struct frames {
     lanes entries[9];
 } IN_LINES;
@@ -79,8 +79,8 @@ IN_LOOP struct matrix frame_at(const struct frames *frames, int64_t i)
     };
 }
 
-/* Looks at the bonds from their lower ends and chooses their frames. How many are in the large
- * one? */
+/* Determine the bonds' upper ends relative to the lower ones, and their frames; return the number
+ * of bonds in the large frame. */
 IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axis axis,
                      int64_t base, const struct frames *restrict frames,
                      struct sight *restrict sight)
@@ -101,9 +101,9 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         const struct quat turned = quat_mul(quat_conj(lower), upper);
         const struct vec turned_axis = axis_to_x(axis, (struct vec){turned.x, turned.y, turned.z});
         const double rest = 0.5 * (size[i] + size[i + step]), aside = fabs(u.y) + fabs(u.z);
-        /* turn and extension against their limits without dividing; backwards, a turn is
-         * negative */
-        const double was = was_small[i]; /* 1 or 0, so the limits are exact enough */
+        /* comparison of turn and extension to their limits without division; the turn of an
+         * inverted bond is negative */
+        const double was = was_small[i]; /* 1 or 0, so the limits are accurate enough */
         const double turn = SMALL_TURN + was * (LARGE_TURN - SMALL_TURN);
         const double extension = SMALL_EXTENSION + was * (LARGE_EXTENSION - SMALL_EXTENSION);
         const double cosine = SMALL_COSINE + was * (LARGE_COSINE - SMALL_COSINE);
@@ -123,7 +123,7 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
     return large;
 }
 
-/* The rotation that takes a direction onto +x, without its x, which is 0; as in bond.c. */
+/* The rotation of a direction onto +x, as in bond.c; its x is 0. */
 IN_LOOP struct quat onto_x(struct vec u, double length)
 {
     const double slope = SLOPE_OF_SMALL_TURN * fabs(u.x), half = 0.5 / u.x;
@@ -134,8 +134,8 @@ IN_LOOP struct quat onto_x(struct vec u, double length)
     return (struct quat){choose(slight, 1.0 - 0.5 * (y * y + z * z), half_cosine), 0.0, y, z};
 }
 
-/* Straightens the bonds that are in the large frame. How many are turned so far that a chord does
- * not do for the arc? */
+/* Transform the bonds in the large frame; return the number of bonds that are turned too far to
+ * replace the arc by the chord. */
 IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict sight)
 {
     int64_t far = 0;
@@ -165,9 +165,9 @@ IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict 
     return far;
 }
 
-/* Length of a rotation vector over that of its quaternion's vector part, as in bond.c: within 5.6
- * degrees the chord counts as the arc, and a cosine beyond 1 or -1, of a quaternion that is not
- * quite unit, as no rotation. */
+/* Ratio of the lengths of a rotation vector and of its quaternion's vector part, as in bond.c: the
+ * chord replaces the arc below 5.6 degrees, and a cosine beyond 1 or -1, of a quaternion that is
+ * not exactly unit, means no rotation. */
 IN_LOOP double arc_ratio(double cosine, bool far)
 {
     const double chord = choose(cosine >= 1.0, 0.0, 2.0 * inverse_root_of_half(1.0 - cosine));
@@ -177,11 +177,11 @@ IN_LOOP double arc_ratio(double cosine, bool far)
     return choose(cosine > COSINE_OF_SMALL_ROTATION, chord, arc);
 }
 
-/* ---- what bonds do --------------------------------------------------------------------------- */
+/* ---- forces of bonds ------------------------------------------------------------------------- */
 
-/* What the bonds of a tile do to their ends, in the world. */
+/* Forces and moments of the bonds of a tile on their ends, in the world. */
 struct loads {
-    lanes force_lower[3], moment_lower[3]; /* of all axes together */
+    lanes force_lower[3], moment_lower[3]; /* summed over the axes */
     lanes force_upper[3], moment_upper[3];
 } IN_LINES;
 
@@ -211,12 +211,12 @@ IN_LOOP struct coupling coupling_in(const struct bonds *bonds, int64_t i)
 #undef LOAD
 }
 
-/* Stretch, and turns of both ends, or how fast they change. */
+/* Stretch and turns of both ends, or their rates. */
 struct change {
     struct vec p, a, b;
 };
 
-/* Force on an end, in the bond's frame: a spring's, or with its own numbers a damper's. */
+/* Force of a spring, or of a damper with its constants, on an end in the bond's frame. */
 IN_LOOP struct vec force_of(double stretch, double shear, double bend_shear, const struct change *c)
 {
     return (struct vec){
@@ -226,7 +226,7 @@ IN_LOOP struct vec force_of(double stretch, double shear, double bend_shear, con
     };
 }
 
-/* Moment on the end that turned by `own`, likewise; it counts twice. */
+/* Moment of a spring or damper on the end that turned by `own`, which counts twice. */
 IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const struct change *c,
                              struct vec own)
 {
@@ -237,8 +237,8 @@ IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const
     };
 }
 
-/* The orientation of a frame that a bond straightens: lower * (w, 0, -y, -z), the latter seen along
- * an axis. */
+/* The orientation of a bond in the large frame: lower * (w, 0, -y, -z), the latter in the bond's
+ * axes. */
 IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, double y, double z)
 {
     const struct vec v = axis_to_x(axis, (struct vec){lower.x, lower.y, lower.z});
@@ -251,9 +251,9 @@ IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, dou
     return (struct quat){lower.w * w + (v.y * y + v.z * z), back.x, back.y, back.z};
 }
 
-/* Computes the forces and moments of a tile's bonds, and keeps how they are deformed. How many are
- * strained too far? The constants say whether all bonds have one coupling, whether some are in the
- * large frame, and turned far. */
+/* Compute the forces and moments of a tile's bonds, and store the deformations; return the number
+ * of overstrained bonds. `coupling` is NULL if bonds differ; the constants `large` and `far` mean
+ * that some bonds are in the large frame, or are turned far. */
 IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
                      const struct coupling *coupling, enum axis axis, int64_t base,
                      double per_second, double most, bool large, bool far,
@@ -289,7 +289,7 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
         const double k = arc_ratio(r.w, far);
         const struct vec b = {k * r.x, k * r.y, k * r.z};
 
-        /* a change of frame leaves the history, from which the next rates come */
+        /* a change of frame keeps the history for the next rates */
         const bool same = sight->small[i] == small[i];
         const double rate = choose(same, per_second, 0.0);
         const struct change now = {p, a, b};
@@ -349,8 +349,8 @@ IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
     for (int64_t i = 0; i < TILE; i++) to[i] -= from[i];
 }
 
-/* Gives what bonds do to their lower or upper ends to the voxels there; a force acts on both, in
- * opposite directions. */
+/* Add the forces and moments on lower or upper ends to the voxels; forces on both ends have
+ * opposite signs. */
 IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3],
                     const lanes moment[3], bool upper)
 {
@@ -387,7 +387,7 @@ IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupl
     return overstrained == 0;
 }
 
-/* Axis after axis in one tile, whose voxels stay in the cache; whether there is one coupling is a
+/* Process all axes of a tile while its voxels are in the cache; whether there is one coupling is a
  * constant. */
 IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupling,
                            double per_second)

@@ -1,9 +1,9 @@
-/* The fast kernel: the bond law (sections 5 and 6) and the motion (sections 4, 7 and 8) for a tile
- * of slots at a time, in loops that the compiler turns into vector instructions. A file for each
- * instruction set includes this one, after a #pragma that allows those instructions, with
- * VECTOR(name) giving its own names; contraction being off, all give the same bits.
+/* The fast kernel: the bond law (sections 5 and 6) and the motion (sections 4, 7 and 8) of a tile
+ * of slots at a time, in loops that the compiler turns into vector instructions. One file per
+ * instruction set includes this file, after a #pragma that enables these instructions; VECTOR(name)
+ * defines its own names. Without floating-point contraction all return the same bits.
  *
- * A missing bond is computed like any other and then left out: no lane depends on another. */
+ * A missing bond is computed like any other and then discarded: no lane depends on another. */
 #include <float.h>
 #include <string.h>
 
@@ -12,14 +12,14 @@
 #include "internal.h"
 #include "lanes.h"
 
-/* Aligned for any vector. */
+/* Aligned for vectors of any size. */
 #ifdef __GNUC__
 #define IN_LINES __attribute__((aligned(64)))
 #else
 #define IN_LINES
 #endif
 
-/* Numbers of a tile. */
+/* One number per slot of a tile. */
 typedef double lanes[TILE];
 
 #include "vector_bonds.h"

@@ -1,13 +1,13 @@
-/* How voxels move and how their sizes follow the actuation (sections 4, 7 and 8) in the fast
- * kernel: see vector_kernel.h, which includes this. */
+/* Motion of voxels and actuation of their sizes (sections 4, 7 and 8) in the fast kernel; included
+ * by vector_kernel.h. */
 
-/* Squares of the largest speeds and ways from the start, in each lane. */
+/* Squares of the largest speed and distance from the start in each lane. */
 struct extremes {
     lanes speed2, way2;
 } IN_LINES;
 
-/* Moves a tile's voxels that are free to move. How many have diverged? The constant says whether
- * slow damping and weight are part of the forces already. */
+/* Move the free voxels of a tile; return the number of diverged ones. The constant `complete` means
+ * that the forces include slow damping and weight. */
 IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, double too_far,
                           bool complete, struct extremes *restrict extremes)
 {
@@ -49,8 +49,7 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
     return lost;
 }
 
-/* Adds slow damping, weight and the floor to the forces on a tile's voxels that are free to
- * move. */
+/* Add slow damping, weight and the floor to the forces on the free voxels of a tile. */
 static void stand_tile(struct body *body, int64_t base)
 {
     for (int64_t slot = base; slot < base + TILE; slot++) {
@@ -60,7 +59,7 @@ static void stand_tile(struct body *body, int64_t base)
     }
 }
 
-/* Turns a tile's voxels that are free to turn. How many have diverged? */
+/* Turn the free voxels of a tile; return the number of diverged ones. */
 static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
 {
     double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
@@ -99,8 +98,8 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
     return lost;
 }
 
-/* Lets the sizes of a tile's voxels follow the actuation, of which `swing` and `sway` are sine and
- * cosine, as in motion.c. */
+/* Update the sizes of a tile's voxels as in motion.c; `swing` and `sway` are the sine and cosine of
+ * the actuation. */
 static void size_tile(const struct voxels *v, int64_t base, const struct actuation *actuation,
                       double swing, double sway)
 {
@@ -122,7 +121,7 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
     }
 }
 
-/* Voxels that are held in part, one by one. */
+/* Advance partly clamped voxels one by one. */
 static bool advance_partly_held(struct body *body)
 {
     bool fine = true;
@@ -140,7 +139,7 @@ IN_LOOP int64_t advance_tile(struct body *body, int64_t base, struct extremes *e
     return move_tile(v, base, dt, too_far, true, extremes) + turn_tile(v, base, dt);
 }
 
-/* The root of the largest of some squares, if it is larger than a number. */
+/* Return the larger of a number and the roots of some squares. */
 static double raised(double number, const double *squares)
 {
     double largest = 0.0;

@@ -1,7 +1,7 @@
 /* The floor: a spring, a damper and dry friction under every voxel (section 9). */
 #include "internal.h"
 
-/* Lateral part of the force on a voxel that is pushed up with `push`. */
+/* Apply friction to a force on a voxel with the normal force `push`. */
 static struct vec rub(struct body *body, int64_t slot, struct vec force, double push)
 {
     const struct substance *s = substance_of_voxel(body, slot);

@@ -9,7 +9,7 @@ static struct vec corner_of(const struct voxels *v, int64_t slot, int corner)
     return vec_add(vec_at(v->position, slot), quat_rotate(quat_at(v->orientation, slot), local));
 }
 
-/* Each corner of the surface is where the voxels that meet there have theirs, on average. */
+/* Set each corner of the surface to the mean of the corners of the adjacent voxels. */
 static void place_corners(struct body *body)
 {
     struct surface *surface = &body->surface;
@@ -27,7 +27,7 @@ static void place_corners(struct body *body)
     }
 }
 
-/* Force on a triangle that moves with a velocity: none on its lee. */
+/* Drag on a moving triangle; zero on the lee side. */
 static struct vec triangle_drag(double coefficient, struct vec a, struct vec b, struct vec c,
                                 struct vec velocity)
 {

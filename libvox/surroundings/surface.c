@@ -1,20 +1,20 @@
-/* The outer surface of a body, for the fluid around it (section 7): faces that the outside reaches,
- * and the corners at which voxels that are joined face to face meet. */
+/* The outer surface of a body in a fluid (section 7): the faces that are connected to the outside,
+ * and the corners that are shared by voxels with common faces. */
 #include <stdlib.h>
 
 #include "internal.h"
 
 /* ---- corners --------------------------------------------------------------------------------- */
 
-/* The eight cells around a lattice point as bits, the cell (x, y, z), each 0 or 1, at x + 2 y + 4
- * z: those that share a face with one of `cells`. */
+/* Return the cells that share a face with one of `cells`. Bits are the eight cells around a lattice
+ * point; cell (x, y, z), each 0 or 1, has bit x + 2 y + 4 z. */
 static unsigned beside(unsigned cells)
 {
     return (cells & 0x55u) << 1 | (cells & 0xAAu) >> 1 | (cells & 0x33u) << 2 |
            (cells & 0xCCu) >> 2 | (cells & 0x0Fu) << 4 | (cells & 0xF0u) >> 4;
 }
 
-/* Those of `cells` that are joined to one of them, face to face. */
+/* Return the cells of `cells` that are connected to `one` by common faces. */
 static unsigned joined_to(unsigned one, unsigned cells)
 {
     unsigned joined = one, before;
@@ -25,7 +25,7 @@ static unsigned joined_to(unsigned one, unsigned cells)
     return joined;
 }
 
-/* Slot of the voxel at (x, y, z) in the box, or -1; also beyond the box. */
+/* Return the slot of the voxel at (x, y, z) in the box; -1 if it is empty or outside the box. */
 static int64_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z)
 {
     const int64_t *length = body->census.length;
@@ -34,7 +34,7 @@ static int64_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z
     return body->occupied[slot] ? slot : -1;
 }
 
-/* Makes one corner for each group of joined voxels around the lattice point (x, y, z). */
+/* Create a corner for each group of connected voxels around the lattice point (x, y, z). */
 static void meet_at(struct body *body, int64_t x, int64_t y, int64_t z)
 {
     struct surface *surface = &body->surface;
@@ -75,7 +75,8 @@ static bool at_border(const struct body *body, int64_t slot)
     return false;
 }
 
-/* Marks the empty slots that can be reached from beyond the box. `queue` has room for all slots. */
+/* Mark the empty slots that are connected to the outside of the box. `queue` has one entry per
+ * slot. */
 static void flood(const struct body *body, bool *outside, int32_t *queue)
 {
     int64_t n = 0;
@@ -121,7 +122,7 @@ static void find_facets(struct body *body, const bool *outside)
     }
 }
 
-/* Leaves only the corners that belong to a facet. */
+/* Remove the corners that do not belong to a facet. */
 static void drop_inner_corners(struct body *body, bool *outer)
 {
     struct surface *surface = &body->surface;

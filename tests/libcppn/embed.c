@@ -1,4 +1,4 @@
-/* A network without Python: the distance from the middle of a square, and a wave along x. */
+/* A network without Python: the distance from the center of a square, and a wave along x. */
 #include <stdio.h>
 
 #include "cppn.h"

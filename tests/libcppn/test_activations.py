@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from evoframe_libcppn import ACTIVATIONS, CppnNetwork
 
-# The table of the paper that evoframe reproduces.
+# Table of the paper that evoframe reproduces.
 NAMES = [
     "sigmoid",
     "tanh",
@@ -37,7 +37,7 @@ EDGES = [0.0, 5e-324, -5e-324, 1e-300, 1.0, -1.0, 3.4, -3.4, 12.0, 24.0, 60.0, -
 
 
 def values(name: str, z: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return an activation's values: a single node adds nothing to what its input is."""
+    """Return the values of an activation from a network with a single node."""
     return CppnNetwork(1, 1, {0: Gene(name)}, [(-1, 0, 1.0)])(z[:, None])[:, 0]
 
 
@@ -48,22 +48,22 @@ def dense() -> NDArray[np.float64]:
     return np.concatenate([EDGES, rng.normal(size=5_000), rng.uniform(-80, 80, 5_000), spread])
 
 
-def test_there_are_the_papers_23() -> None:
+def test_activations_are_the_23_of_the_paper() -> None:
     assert list(ACTIVATIONS) == NAMES == list(PAPER)
     assert len(ACTIVATIONS) == 23
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_each_is_neat_pythons_bit_for_bit(name: str) -> None:
+def test_each_equals_neat_python_bit_for_bit(name: str) -> None:
     z = dense()
     assert values(name, z).tolist() == [NEAT[name](number) for number in z.tolist()]
 
 
 @pytest.mark.parametrize("name", NAMES)
 @given(z=st.floats())
-def test_each_is_its_formula_bit_for_bit(name: str, z: float) -> None:
+def test_each_equals_its_formula_bit_for_bit(name: str, z: float) -> None:
     value = values(name, np.array([z]))
-    expected = PAPER[name](0.0 + z)  # a sum begins with 0.0, so that -0.0 does not enter
+    expected = PAPER[name](0.0 + z)  # a sum starts with 0.0, so that -0.0 becomes 0.0
     assert value.tobytes() == np.float64(expected).tobytes()
     assert np.isfinite(value).all()
     assert np.abs(value).max() <= LIMIT

@@ -1,4 +1,4 @@
-"""The C interface, where Python does not pass: missing arrays, sizes, statuses, and a program in C."""
+"""Parts of the C interface that Python does not use: missing arrays, sizes, statuses, and a C program."""
 
 import math
 import re
@@ -27,10 +27,12 @@ def links_of(*rows: Any) -> Any:
 
 
 def compiled(status: int, nodes: Any = (NODE,), links: Any = (LINK,)) -> int:
-    """Compile a network of one input and one output and check what that says; return the culprit."""
+    """Compile a network with one input and output and check the status; return the culprit."""
     made, culprit = ffi.new("cppn_network **"), ffi.new("int64_t *", 77)
-    said = lib.cppn_compile(1, 1, len(nodes), nodes_of(*nodes), len(links), links_of(*links), made, culprit)
-    assert said == status
+    returned = lib.cppn_compile(
+        1, 1, len(nodes), nodes_of(*nodes), len(links), links_of(*links), made, culprit
+    )
+    assert returned == status
     assert (made[0] == ffi.NULL) == (status != lib.CPPN_OK)
     lib.cppn_destroy(made[0])
     found: int = culprit[0]
@@ -52,7 +54,7 @@ def test_every_status_has_a_message() -> None:
     assert ffi.string(lib.cppn_status_message(12345)) == b"unknown status"
 
 
-def test_what_is_wrong_is_named() -> None:
+def test_the_culprit_is_the_invalid_item() -> None:
     other, late = (3, lib.CPPN_ABS, 0.0, 1.0), (-1, 3, 1.0)
     assert compiled(lib.CPPN_OK) == -1
     assert compiled(lib.CPPN_OK, links=()) == -1
@@ -71,7 +73,7 @@ ENDS = st.tuples(st.integers(-4, 5), st.integers(-1, 5), st.floats())
 
 
 @given(st.lists(ROWS, max_size=6), st.lists(ENDS, max_size=12))
-def test_any_arrays_give_finite_values_or_a_status(rows: Any, ends: Any) -> None:
+def test_any_arrays_return_finite_values_or_a_status(rows: Any, ends: Any) -> None:
     made, culprit = ffi.new("cppn_network **"), ffi.new("int64_t *")
     arrays = (len(rows), nodes_of(*rows), len(ends), links_of(*ends))
     status = lib.cppn_compile(3, 2, *arrays, made, culprit)
@@ -127,22 +129,22 @@ def test_numbers_of_points_do_not_overflow(network: Any, n: int) -> None:
     assert outputs[0] == 7.0
 
 
-def test_the_version_is_that_of_the_header() -> None:
+def test_the_version_agrees_with_the_header() -> None:
     header = (ROOT / "libcppn" / "include" / "cppn.h").read_text(encoding="utf-8")
     [version] = re.findall(r'^#define CPPN_VERSION "(\d+\.\d+\.\d+)"$', header, re.MULTILINE)
     assert version == evoframe_libcppn.VERSION
 
 
-def test_a_program_in_c_runs(tmp_path: Path) -> None:
+def test_a_c_program_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc")
-    assert compiler, "this test needs the C compiler cc, as the installation did"
+    assert compiler, "this test requires the C compiler cc, like the installation"
     sources = map(str, sources_of("libcppn"))
     program = str(tmp_path / "embed")
     include = ["-I", str(ROOT / "libcppn" / "include"), "-I", str(ROOT / "libcppn")]
     embed = str(ROOT / "tests" / "libcppn" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
-    said = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     wave = [math.sin(5.0 * x) for x in (0.5, 1.0, 0.0)]
     distances = [0.0, 0.5, math.sqrt(0.5)]
     rows = zip(distances, wave, strict=True)
-    assert said.splitlines() == [f"{distance:.9f} {height:.9f}" for distance, height in rows]
+    assert output.splitlines() == [f"{distance:.9f} {height:.9f}" for distance, height in rows]

@@ -1,4 +1,4 @@
-"""What the tests of the solver share: the paper's setting, small models, a way to say what was measured."""
+"""Fixtures for the tests of the solver: the paper's setting, small models, and output of measurements."""
 
 import sys
 from collections.abc import Callable, Iterable
@@ -15,7 +15,7 @@ Arrays = dict[str, NDArray[Any]]
 
 
 def small_settings(**changes: Any) -> Settings:
-    """Settings for a few dozen steps of small bodies with the paper's materials."""
+    """Return settings for a few dozen steps of small bodies with the paper's materials."""
     options: dict[str, Any] = {
         "voxel_size": 0.05,
         "duration": 0.1,
@@ -26,7 +26,7 @@ def small_settings(**changes: Any) -> Settings:
 
 
 def material(**changes: float) -> Material:
-    """Return the paper's passive material, or another."""
+    """Return the paper's passive material with changes."""
     options = {"youngs_modulus": 5e6, "poisson_ratio": 0.35, "density": 1e6, "expansion": 0.0}
     return Material(**(options | changes))
 
@@ -40,7 +40,7 @@ def small_model(
     fixed: ArrayLike | None = None,
     **changes: Any,
 ) -> Model:
-    """Return a model that fixes nothing unless told."""
+    """Return a model, by default without fixed cells."""
     held = np.zeros(canvas, np.uint8) if fixed is None else np.asarray(fixed, np.uint8).reshape(canvas)
     return Model(canvas, palette or PALETTE, small_settings(**changes), held)
 
@@ -52,9 +52,9 @@ def follow(
     steps: Iterable[int] | None = None,
     tracks: Iterable[Track] = get_args(Track),
 ) -> Arrays:
-    """Return the tracks of one body, which must not diverge, after every step or after given ones.
+    """Return the tracks of one body, which must not diverge, after every step or after the given steps.
 
-    One material or one phase stands for all cells; arrays are taken in the order of ``[X, Y, Z]``.
+    A single material or phase applies to all cells; arrays have the order ``[X, Y, Z]``.
     """
     cells, phases = (
         np.broadcast_to(a, model.canvas) if np.ndim(a) == 0 else np.reshape(a, model.canvas)
@@ -98,14 +98,14 @@ def data() -> Path:
 
 @pytest.fixture(scope="session")
 def paper(data: Path) -> Arrays:
-    """The traces of the paper's setting: 36 bodies with controllers."""
+    """Traces of the paper's setting: 36 bodies with controllers."""
     with np.load(data / "paper_preset.npz") as arrays:
         return dict(arrays)
 
 
 @pytest.fixture(scope="session")
 def paper_model() -> Callable[..., Model]:
-    """Make the paper's model: slab x = 0 clamped, 22 steps."""
+    """Create models of the paper: slab x = 0 clamped, 22 steps."""
 
     def make(
         expansion: float = 0.01, *, kernel: str | None = None, whole_body: bool = False, **changes: Any
@@ -122,7 +122,7 @@ def paper_model() -> Callable[..., Model]:
 
 @pytest.fixture
 def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
-    """Print what was measured, whatever pytest captures."""
+    """Print a measurement in spite of pytest's capturing."""
 
     def write(text: str) -> None:
         with capsys.disabled():

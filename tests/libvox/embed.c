@@ -1,5 +1,5 @@
-/* The solver without Python: a bar of ten voxels that lies on a floor, one end held against everything but turning,
- * its outer half contractile. */
+/* The solver without Python: a bar of ten voxels on a floor, with one end pinned and the outer half
+ * contractile. */
 #include <stdio.h>
 
 #include "vox.h"
@@ -43,7 +43,7 @@ int main(void)
         status = vox_simulate(model, 1, material, phase_cycles, 1, &steps, &tracks, &diverged_step, NULL);
     if (status == VOX_OK && diverged_step == 0) {
         printf("tip after %d steps: %.9f %.9f %.9f m\n", (int)steps, tip[0], tip[1], tip[2]);
-        printf("energy: %.9f J in bonds, %.9f J of motion\n", energy[0], energy[1]);
+        printf("energy: %.9f J in bonds, %.9f J kinetic\n", energy[0], energy[1]);
     }
     vox_model_destroy(model);
     return status != VOX_OK || diverged_step != 0;

@@ -1,4 +1,4 @@
-"""What the solver refuses, and in which words."""
+"""Errors for invalid arguments of the solver."""
 
 import math
 import re
@@ -79,23 +79,23 @@ def test_every_setting_and_property_has_its_range_tested() -> None:
 
 
 @pytest.mark.parametrize(("ranges", "cases"), [(SETTING_RANGES, SETTINGS), (PROPERTY_RANGES, MATERIALS)])
-def test_ranges_are_those_of_the_solver(
+def test_ranges_agree_with_the_solver(
     ranges: Mapping[str, Range], cases: dict[str, tuple[list[float], str]]
 ) -> None:
     assert ranges.keys() == cases.keys()
     for field, (values, words) in cases.items():
         assert words in ranges[field].words
-        refused = set(values) - ({1e308} if field == "expansion" else set())  # times the amplitude
-        assert [value for value in refused if value in ranges[field]] == []
+        rejected = set(values) - ({1e308} if field == "expansion" else set())  # times the amplitude
+        assert [value for value in rejected if value in ranges[field]] == []
         assert all(value in ranges[field] for value in EXTREMES.get(field, []))
 
 
 @given(data=st.data(), field=st.sampled_from(sorted(SETTING_RANGES)))
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_a_number_is_refused_if_it_is_not_in_the_range(
+def test_a_number_outside_the_range_is_rejected(
     small_model: ModelMaker, data: st.DataObject, field: str
 ) -> None:
-    """But in the range the other settings may still give no usable time step, which no model knows yet."""
+    """Numbers in the range are accepted; time steps are checked later, for each body."""
     span = SETTING_RANGES[field]
     bounds = [bound for bound in (span.lower, span.upper) if math.isfinite(bound)]
     near = [math.nextafter(bound, way) for bound in bounds for way in (-INF, INF)]
@@ -104,11 +104,11 @@ def test_a_number_is_refused_if_it_is_not_in_the_range(
     if value in span:
         small_model(CANVAS, **{field: value})
     else:
-        with pytest.raises(ValueError, match=f"^{re.escape(f'{field} must be {span.words}')}, got "):
+        with pytest.raises(ValueError, match=f"^{field} .*{re.escape(span.words)}, got "):
             small_model(CANVAS, **{field: value})
 
 
-def test_only_whole_numbers_are_in_the_range_of_steps() -> None:
+def test_only_integers_are_in_the_range_of_steps() -> None:
     assert {name for name, span in SETTING_RANGES.items() if span.whole} == {"substeps", "step_limit"}
     assert 1.5 not in SETTING_RANGES["substeps"]
     assert 2 in SETTING_RANGES["substeps"]
@@ -119,12 +119,12 @@ def test_only_whole_numbers_are_in_the_range_of_steps() -> None:
 def test_settings_out_of_range(small_model: ModelMaker, field: str) -> None:
     values, words = SETTINGS[field]
     for value in values:
-        with pytest.raises(ValueError, match=rf"^{field} must be .*{re.escape(words)}.*, got {value}$"):
+        with pytest.raises(ValueError, match=rf"^{field} .*{re.escape(words)}.*, got {value}$"):
             small_model(CANVAS, **{field: value})
 
 
 @pytest.mark.parametrize("field", EXTREMES)
-def test_settings_at_the_ends_of_their_range(small_model: ModelMaker, field: str) -> None:
+def test_settings_at_the_bounds_of_their_range(small_model: ModelMaker, field: str) -> None:
     for value in EXTREMES[field]:
         assert getattr(small_model(CANVAS, **{field: value}).settings, field) == value
 
@@ -133,8 +133,8 @@ def test_settings_at_the_ends_of_their_range(small_model: ModelMaker, field: str
 def test_materials_out_of_range(small_model: ModelMaker, material: Callable[..., object], field: str) -> None:
     values, words = MATERIALS[field]
     for value in values:
-        said = rf"^{field}.* must be .*{re.escape(words)}.*, got {re.escape(str(value))} for material 9$"
-        with pytest.raises(ValueError, match=said):
+        expected = rf"^{field}.*{re.escape(words)}.*, got {re.escape(str(value))} for material 9$"
+        with pytest.raises(ValueError, match=expected):
             small_model(CANVAS, palette={1: material(), 9: material(**{field: value})})
 
 
@@ -142,12 +142,12 @@ def test_materials_out_of_range(small_model: ModelMaker, material: Callable[...,
 def test_canvas_without_cells(
     small_settings: Callable[..., Settings], palette: dict[int, Material], canvas: tuple[int, int, int]
 ) -> None:
-    with pytest.raises(ValueError, match="at least 1 cell along each axis"):
+    with pytest.raises(ValueError, match=r"canvas .* 1 cell"):
         Model(canvas, palette, small_settings(), np.zeros(tuple(max(n, 0) for n in canvas), np.uint8))
 
 
 def test_canvas_too_large(small_model: ModelMaker) -> None:
-    with pytest.raises(ValueError, match=r"at most 2\^24 cells in all, got \(4096, 4097, 1\)"):
+    with pytest.raises(ValueError, match=r"canvas .* 2\^24 cells, got \(4096, 4097, 1\)"):
         small_model((4096, 4097, 1))
 
 
@@ -155,20 +155,20 @@ def test_canvas_too_large(small_model: ModelMaker) -> None:
 def test_palette_codes_out_of_range(
     small_model: ModelMaker, material: Callable[..., object], code: int
 ) -> None:
-    with pytest.raises(ValueError, match=f"codes from 1 to 255, got {code}"):
+    with pytest.raises(ValueError, match=rf"palette .* 1 to 255, got {code}"):
         small_model(CANVAS, palette={code: material()})
 
 
 def test_empty_palette(small_settings: Callable[..., Any]) -> None:
-    with pytest.raises(ValueError, match="at least one material"):
+    with pytest.raises(ValueError, match="palette"):
         Model(CANVAS, {}, small_settings(), np.zeros(CANVAS, np.uint8))
 
 
 def test_fixed_must_be_a_mask(small_settings: Callable[..., Any], palette: dict[int, Any]) -> None:
-    with pytest.raises(ValueError, match=r"fixed must have the shape \[2, 1, 2\], got \[2, 1\]"):
+    with pytest.raises(ValueError, match=r"^fixed .*\[2, 1, 2\], got \[2, 1\]"):
         Model(CANVAS, palette, small_settings(), np.zeros((2, 1), np.uint8))
     for dtype in (np.float64, np.int64, np.bool_):
-        with pytest.raises(ValueError, match=f"fixed must be uint8, got {np.dtype(dtype)}"):
+        with pytest.raises(ValueError, match=f"^fixed .* uint8, got {np.dtype(dtype)}"):
             Model(CANVAS, palette, small_settings(), np.zeros(CANVAS, dtype))
 
 
@@ -176,8 +176,7 @@ def test_fixed_must_be_a_mask(small_settings: Callable[..., Any], palette: dict[
 def test_fixed_has_six_bits(small_settings: Callable[..., Any], palette: dict[int, Any], mask: int) -> None:
     fixed = np.zeros(CANVAS, np.uint8)
     fixed[0, 0, 1] = mask
-    said = r"^fixed must be at most 63, .* \(cell 2 in the order x fastest, then y, then z\)$"
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=r"^fixed .* 63.* \(cell 2 "):
         Model(CANVAS, palette, small_settings(), fixed)
 
 
@@ -185,15 +184,15 @@ def test_unknown_material_names_the_body(small_model: ModelMaker) -> None:
     material, phase = (np.repeat(a, 3, axis=0) for a in one_body())
     material[2, 0, 0, 1] = 2
     model = small_model(CANVAS)
-    with pytest.raises(ValueError, match=r"material code that is not in the palette \(body 2\)"):
+    with pytest.raises(ValueError, match=r"material code .* \(body 2\)"):
         model.time_steps(material)
-    with pytest.raises(ValueError, match=r"material code that is not in the palette \(body 2\)"):
+    with pytest.raises(ValueError, match=r"material code .* \(body 2\)"):
         model.simulate(material, phase, [0])
 
 
 def test_empty_body(small_model: ModelMaker) -> None:
     material, phase = one_body(0)
-    with pytest.raises(ValueError, match=r"the body has no voxel \(body 0\)"):
+    with pytest.raises(ValueError, match=r"no voxels \(body 0\)"):
         small_model(CANVAS).simulate(material, phase, [0])
 
 
@@ -201,7 +200,7 @@ def test_empty_body(small_model: ModelMaker) -> None:
 def test_absurd_phase(small_model: ModelMaker, phase: float) -> None:
     material, phases = one_body(3)
     phases[0, 1, 0, 0] = phase
-    with pytest.raises(ValueError, match=r"phase of an expanding voxel must be finite .* \(body 0\)"):
+    with pytest.raises(ValueError, match=r"phase .* 1e6 cycles \(body 0\)"):
         small_model(CANVAS).simulate(material, phases, [0])
 
 
@@ -214,9 +213,9 @@ def test_samples_out_of_order(small_model: ModelMaker, steps: list[int]) -> None
 def test_samples_of_each_body_are_checked(small_model: ModelMaker) -> None:
     material, phase = (np.repeat(a, 3, axis=0) for a in one_body())
     model = small_model(CANVAS)
-    with pytest.raises(ValueError, match=r"strictly ascending and not negative \(body 1\)"):
+    with pytest.raises(ValueError, match=r"sample_steps .*strictly ascending.* \(body 1\)"):
         model.simulate(material, phase, np.array([[0, 1], [1, 1], [0, 1]]))
-    with pytest.raises(ValueError, match=r"beyond the end of the simulation \(body 2\)"):
+    with pytest.raises(ValueError, match=r"sample_steps .*beyond.* \(body 2\)"):
         model.simulate(material, phase, np.array([[0, 1], [0, 2], [0, 999]]))
 
 
@@ -224,7 +223,7 @@ def test_samples_end_with_the_simulation(small_model: ModelMaker) -> None:
     model = small_model(CANVAS)
     last = int(model.time_steps(one_body()[0])[1][0])
     assert model.simulate(*one_body(), [last]).tracks["tip"].shape == (1, 1, 3)
-    with pytest.raises(ValueError, match=r"beyond the end of the simulation \(body 0\)"):
+    with pytest.raises(ValueError, match=r"sample_steps .*beyond.* \(body 0\)"):
         model.simulate(*one_body(), [last + 1])
 
 
@@ -232,37 +231,35 @@ def test_time_step_must_be_usable(small_model: ModelMaker, material: Callable[..
     endless = small_model(CANVAS, time_step_fraction=1e-300)
     long = small_model(CANVAS, duration=1e9, palette={1: material(density=1e-6, youngs_modulus=1e18)})
     for model in (endless, long):
-        with pytest.raises(ValueError, match=r"no usable time step .* \(body 0\)"):
+        with pytest.raises(ValueError, match=r"time step .* \(body 0\)"):
             model.simulate(*one_body(), [])
 
 
 @pytest.mark.parametrize("dtype", [np.int64, np.uint16, np.float64])
 def test_material_codes_are_not_converted(small_model: ModelMaker, dtype: type) -> None:
     material, phase = one_body()
-    with pytest.raises(ValueError, match="material must be uint8, got"):
+    with pytest.raises(ValueError, match=f"^material .* uint8, got {np.dtype(dtype)}"):
         small_model(CANVAS).simulate(material.astype(dtype), phase, [0])
 
 
 def test_shapes_must_fit(small_model: ModelMaker) -> None:
     material, phase = one_body()
     model = small_model(CANVAS)
-    with pytest.raises(ValueError, match=r"material must have the shape \[N, 2, 1, 2\], got \[2, 1, 2\]"):
+    with pytest.raises(ValueError, match=r"^material .*\[N, 2, 1, 2\], got \[2, 1, 2\]"):
         model.simulate(material[0], phase, [0])
-    with pytest.raises(
-        ValueError, match=r"phase_cycles must have the shape \[1, 2, 1, 2\], got \[2, 2, 1, 2\]"
-    ):
+    with pytest.raises(ValueError, match=r"^phase_cycles .*\[1, 2, 1, 2\], got \[2, 2, 1, 2\]"):
         model.simulate(material, np.repeat(phase, 2, axis=0), [0])
-    with pytest.raises(ValueError, match=r"sample_steps must have the shape \[1, N\], got \[2, 1\]"):
+    with pytest.raises(ValueError, match=r"^sample_steps .*\[1, N\], got \[2, 1\]"):
         model.simulate(material, phase, np.zeros((2, 1), np.int64))
-    with pytest.raises(ValueError, match=r"sample_steps must have the shape \[N\], got \[1, 1, 1\]"):
+    with pytest.raises(ValueError, match=r"^sample_steps .*\[N\], got \[1, 1, 1\]"):
         model.simulate(material, phase, np.zeros((1, 1, 1), np.int64))
-    with pytest.raises(ValueError, match="sample_steps must be int64, got float64"):
-        model.simulate(material, phase, [0.0])  # type: ignore[list-item]  # the mistake under test
+    with pytest.raises(ValueError, match=r"^sample_steps .* int64, got float64"):
+        model.simulate(material, phase, [0.0])  # type: ignore[list-item]  # the error under test
 
 
 def test_unknown_track(small_model: ModelMaker) -> None:
-    with pytest.raises(ValueError, match="unknown tracks elbow, knee; there are tip, face, body, voxels, "):
-        small_model(CANVAS).simulate(*one_body(), [0], ["knee", "elbow"])  # type: ignore[list-item]  # the mistake under test
+    with pytest.raises(ValueError, match=r" elbow, knee; .* tip, face, body, voxels, "):
+        small_model(CANVAS).simulate(*one_body(), [0], ["knee", "elbow"])  # type: ignore[list-item]  # the error under test
 
 
 def test_arrays_may_have_any_layout(small_model: ModelMaker) -> None:
@@ -280,13 +277,11 @@ def test_public_names() -> None:
     assert all(hasattr(evoframe_libvox, name) for name in evoframe_libvox.__all__)
 
 
-def test_a_mask_of_truths_is_no_mask_of_bits(
-    small_settings: Callable[..., Any], palette: dict[int, Any]
-) -> None:
-    with pytest.raises(ValueError, match="fixed must be uint8, got bool"):
+def test_a_mask_of_booleans_is_rejected(small_settings: Callable[..., Any], palette: dict[int, Any]) -> None:
+    with pytest.raises(ValueError, match=r"^fixed .* uint8, got bool"):
         Model(CANVAS, palette, small_settings(), np.zeros(CANVAS, bool))
 
 
-def test_words_of_a_range_are_those_of_the_readme() -> None:
+def test_the_words_of_a_range_agree_with_the_readme() -> None:
     assert 0.07 in SETTING_RANGES["duration"]
     assert SETTING_RANGES["duration"].words == "above 0 and at most 1e9 s"

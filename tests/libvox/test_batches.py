@@ -1,4 +1,4 @@
-"""A body's result depends on the body, and on nothing that happens around it."""
+"""Results of a body do not depend on other bodies, threads, samples or tracks."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -30,7 +30,7 @@ def model(small_model: ModelMaker) -> Model:
 
 
 def same(a: Result, b: Result) -> bool:
-    """Whether two results are the same, bit for bit."""
+    """Return whether two results are equal, bit for bit."""
     tracks = a.tracks.keys() == b.tracks.keys() and all(
         np.array_equal(a.tracks[name], b.tracks[name], equal_nan=True) for name in a.tracks
     )
@@ -51,7 +51,7 @@ def test_a_batch_equals_its_members(model: Model, bodies: Bodies) -> None:
         assert same(part(batch, one), model.simulate(material[one], phase[one], range(20)))
 
 
-def test_threads_give_the_same(model: Model, bodies: Bodies) -> None:
+def test_threads_get_the_same_results(model: Model, bodies: Bodies) -> None:
     material, phase = bodies
     alone = model.simulate(material, phase, range(20))
     with ThreadPoolExecutor(8) as pool:
@@ -100,10 +100,10 @@ def test_sample_0_is_the_initial_state(model: Model, bodies: Bodies) -> None:
     assert np.isnan(start[material == 0]).all()
 
 
-def test_tracks_are_what_they_say(model: Model, small_model: ModelMaker) -> None:
+def test_tracks_agree_with_their_definitions(model: Model, small_model: ModelMaker) -> None:
     material = np.zeros((1, *CANVAS), np.uint8)
     material[0, :3, 1, 1] = (1, 3, 1)
-    material[0, 2, 0, 2] = 3  # the last of the flat order, and one of two at the largest x
+    material[0, 2, 0, 2] = 3  # the last in cell order, and one of two at the largest x
     tracks = model.simulate(material, np.zeros(material.shape), [0, 9]).tracks
     voxels = tracks["voxels"][0]
     assert np.array_equal(tracks["tip"][0], voxels[:, 2, 0, 2])
@@ -118,17 +118,17 @@ def test_means_are_weighted_with_mass(small_model: ModelMaker, material: Callabl
     assert start["face"][0, 0, 2] == start["body"][0, 0, 2]
 
 
-def test_an_empty_batch_is_fine(model: Model) -> None:
+def test_an_empty_batch_is_allowed(model: Model) -> None:
     nothing = np.zeros((0, *CANVAS))
     result = model.simulate(nothing.astype(np.uint8), nothing, [0, 1])
     assert result.tracks["voxels"].shape == (0, 2, *CANVAS, 3)
     assert result.diverged_step.shape == (0,)
 
 
-def test_divergence_is_said_and_disturbs_nobody(
+def test_divergence_is_reported_and_does_not_affect_others(
     small_model: ModelMaker, material: Callable[..., object], palette: dict[int, object]
 ) -> None:
-    # Slow damping goes by a voxel's own stiffness, the time step by its bonds', which soft neighbours limit.
+    # Slow damping depends on a voxel's own stiffness, the time step on its bonds, limited by soft neighbors.
     model = small_model((4, 1, 1), palette=palette | {7: material(youngs_modulus=5e14)})
     sane = np.array([1, 3, 0, 0], np.uint8).reshape(1, 4, 1, 1)
     wild = np.array([3, 7, 1, 0], np.uint8).reshape(1, 4, 1, 1)
@@ -148,8 +148,8 @@ def test_divergence_is_said_and_disturbs_nobody(
     assert same(part(result, slice(2, 3)), alone)
 
 
-def test_a_voxel_that_leaves_the_neighbourhood_has_diverged(small_model: ModelMaker) -> None:
-    # Two voxels without a bond, diagonal and so within each other's reach, and nothing to slow them down.
+def test_a_voxel_that_moves_too_far_has_diverged(small_model: ModelMaker) -> None:
+    # Two voxels without a bond and damping, diagonal and thus within reach of each other.
     model = small_model((2, 2, 1), duration=100.0, slow_damping=0.0)
     material = np.array([[1, 0], [0, 1]], np.uint8).reshape(1, 2, 2, 1)
     steps = int(model.time_steps(material)[1][0])

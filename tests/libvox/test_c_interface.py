@@ -1,4 +1,4 @@
-"""The C interface, where Python does not pass: missing arrays, sizes, statuses, and a program in C."""
+"""Parts of the C interface that Python does not use: missing arrays, sizes, statuses, and a C program."""
 
 import re
 import shutil
@@ -64,12 +64,12 @@ def palette(**changes: Any) -> Any:
 
 
 def created(status: int, **changes: Any) -> Any:
-    """Create a model and check what that says; return the culprit."""
+    """Create a model and check the status; return the culprit."""
     made, culprit = ffi.new("vox_model **"), ffi.new("int64_t *", 77)
     fields, substance = ({k: v for k, v in changes.items() if k in one} for one in (FIELDS, SUBSTANCE))
     fixed = ffi.new("uint8_t[]", changes.get("fixed", [0, 0]))
-    said = lib.vox_model_create(settings(**fields), palette(**substance), 2, fixed, made, culprit)
-    assert said == status
+    found = lib.vox_model_create(settings(**fields), palette(**substance), 2, fixed, made, culprit)
+    assert found == status
     assert (made[0] == ffi.NULL) == (status != lib.VOX_OK)
     lib.vox_model_destroy(made[0])
     return culprit[0]
@@ -91,13 +91,13 @@ def test_every_status_has_a_message() -> None:
 
 
 def test_every_field_is_given_here() -> None:
-    """So that the tests below start from a model that is whole."""
+    """The tests below require a complete model."""
     for struct, fields in (("vox_settings", FIELDS), ("vox_material", SUBSTANCE)):
         assert [name for name, _ in ffi.typeof(f"struct {struct}").fields] == list(fields)
 
 
 def test_every_setting_and_property_has_a_status_of_its_name() -> None:
-    """But for the switches: each number that is none is refused by name, and those of materials by code."""
+    """Every invalid number except switches has a status with its name, and those of materials the code."""
     statuses = {name: code for code, name in ffi.typeof("enum vox_status").elements.items()}
     switches = {"nx", "ny", "nz", "floor", "self_collision", "contact_friction", "complete_contacts"}
     for fields, culprit in ((FIELDS, -1), (SUBSTANCE, 1)):
@@ -107,7 +107,7 @@ def test_every_setting_and_property_has_a_status_of_its_name() -> None:
 
 
 def in_header(words: str) -> str:
-    """Return a range as comments of the header write it."""
+    """Return a range in the notation of comments in the header."""
     for pattern, notation in (
         (r"between (\S+) and (\S+).*", r"\1 .. \2"),
         (r"above (\S+) and at most (\S+).*", r"\1 < . <= \2"),
@@ -122,7 +122,7 @@ def in_header(words: str) -> str:
 
 
 def test_the_header_states_the_ranges() -> None:
-    """A person reads them there, while the program has its table."""
+    """The comments agree with the table of ranges."""
     header = (ROOT / "libvox" / "include" / "vox.h").read_text(encoding="utf-8")
     ranges = {**evoframe_libvox.SETTING_RANGES, **evoframe_libvox.PROPERTY_RANGES}
     for name, span in ranges.items():
@@ -130,13 +130,13 @@ def test_the_header_states_the_ranges() -> None:
         assert in_header(span.words) in comment
 
 
-def test_there_is_no_range_beyond_the_last() -> None:
+def test_ranges_end_after_the_last() -> None:
     for nth, count in ((lib.vox_setting_range, 21), (lib.vox_property_range, 6)):
         assert nth(count - 1) != ffi.NULL
         assert nth(count) == nth(-1) == nth(-(2**31)) == nth(2**31 - 1) == ffi.NULL
 
 
-def test_the_first_bad_cell_of_the_fixed_ones_is_named() -> None:
+def test_the_culprit_is_the_first_invalid_fixed_cell() -> None:
     assert created(lib.VOX_OK, fixed=[0, 63]) == -1
     assert created(lib.VOX_BAD_FIXED, fixed=[0, 64]) == 1
     assert created(lib.VOX_BAD_FIXED, fixed=[255, 64]) == 0
@@ -189,7 +189,7 @@ def test_missing_arguments_of_a_batch(model: Any) -> None:
 
 
 def test_the_culprit_is_the_body(model: Any) -> None:
-    """Also where what is wrong is a row of the steps, or that there are too many."""
+    """Also for invalid sample steps and too many steps."""
     material, phase = ffi.new("uint8_t[4]", [1, 1, 1, 1]), ffi.new("double[4]")
     tracks, diverged, culprit = ffi.new("struct vox_tracks *"), ffi.new("int64_t[2]"), ffi.new("int64_t *")
     for steps, status, body in (
@@ -210,8 +210,8 @@ def test_the_culprit_is_the_body(model: Any) -> None:
     lib.vox_model_destroy(limited[0])
 
 
-def test_what_is_refused_leaves_the_buffers_as_they_were(model: Any) -> None:
-    """Also those of the bodies before the one that is wrong."""
+def test_a_call_that_fails_does_not_change_the_buffers(model: Any) -> None:
+    """Also those of bodies before the invalid one."""
     material, phase = ffi.new("uint8_t[4]", [1, 1, 1, 2]), ffi.new("double[4]")
     tip, diverged = ffi.new("double[6]", [7.0] * 6), ffi.new("int64_t[2]", [7, 7])
     tracks, steps = ffi.new("struct vox_tracks *", {"tip": tip}), ffi.new("int64_t[2]", [1, 1])
@@ -221,7 +221,7 @@ def test_what_is_refused_leaves_the_buffers_as_they_were(model: Any) -> None:
     assert list(diverged) == [7, 7]
 
 
-def test_no_steps_are_needed_without_samples(model: Any) -> None:
+def test_steps_may_be_missing_without_samples(model: Any) -> None:
     material, phase = ffi.new("uint8_t[2]", [1, 1]), ffi.new("double[2]")
     tracks, diverged = ffi.new("struct vox_tracks *"), ffi.new("int64_t[1]", [5])
     assert lib.vox_simulate(model, 1, material, phase, 0, ffi.NULL, tracks, diverged, ffi.NULL) == lib.VOX_OK
@@ -238,20 +238,20 @@ def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> N
     assert status == lib.VOX_BAD_BATCH
 
 
-def test_the_version_is_that_of_the_header() -> None:
+def test_the_version_agrees_with_the_header() -> None:
     header = (ROOT / "libvox" / "include" / "vox.h").read_text(encoding="utf-8")
     [version] = re.findall(r'^#define VOX_VERSION "(\d+\.\d+\.\d+)"$', header, re.MULTILINE)
     assert version == evoframe_libvox.VERSION
 
 
-def test_a_program_in_c_runs(tmp_path: Path) -> None:
+def test_a_c_program_runs(tmp_path: Path) -> None:
     compiler = shutil.which("cc")
-    assert compiler, "this test needs the C compiler cc, as the installation did"
+    assert compiler, "this test requires the C compiler cc, like the installation"
     sources = map(str, sources_of("libvox"))
     program = str(tmp_path / "embed")
     include = ["-I", str(ROOT / "libvox" / "include"), "-I", str(ROOT / "libvox")]
     embed = str(ROOT / "tests" / "libvox" / "embed.c")
     subprocess.run([compiler, "-std=c11", "-O1", *include, embed, *sources, "-o", program, "-lm"], check=True)
-    said = subprocess.run([program], check=True, capture_output=True, text=True).stdout
-    assert said.splitlines()[0].startswith("tip after 44 steps: ")
-    assert said.splitlines()[1].startswith("energy: ")
+    output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    assert output.splitlines()[0].startswith("tip after 44 steps: ")
+    assert output.splitlines()[1].startswith("energy: ")

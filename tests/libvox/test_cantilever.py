@@ -1,10 +1,10 @@
-"""A bar that is clamped at one end and bends under its weight, against Euler and Bernoulli.
+"""A bar that is clamped at one end and bends under its weight, compared with Euler-Bernoulli theory.
 
-A bond is a beam of square section between the centres of two voxels, so a bar of n voxels with the first one
-clamped is a beam of (n - 1) lattice edges, clamped at the centre of the first voxel, that carries the weight
-of each other voxel at its centre. Under small loads the theory of beams is then exact at the centres. Against
-a bar with its weight spread evenly, which ends half an edge beyond the last centre, it is not: the first half
-voxel carries no load and every other one carries it at a point.
+A bond is a beam of square cross section between the centers of two voxels. A bar of n voxels with the first
+one clamped is a beam of (n - 1) lattice edges, clamped at the center of the first voxel, with the weight of
+each other voxel at its center. For small loads beam theory is exact at the centers. A beam with uniform
+weight that ends half an edge beyond the last center differs: here the first half voxel has no load, and the
+other loads are points.
 """
 
 import math
@@ -25,23 +25,23 @@ STIFFNESS = 5e6 * L**4 / 12  # E I
 
 
 def under_points(at: NDArray[np.floating[Any]], load: float) -> NDArray[np.float64]:
-    """Return the deflections of a clamped beam at points that carry a load each, m."""
+    """Return the deflections of a clamped beam at its point loads, m."""
     x, a = np.maximum.outer(at, at), np.minimum.outer(at, at)
     total: NDArray[np.float64] = (load * a**2 * (3 * x - a) / (6 * STIFFNESS)).sum(axis=1)
     return total
 
 
 def under_own_weight(x: float, length: float, load_per_length: float) -> float:
-    """Return the deflection of a clamped beam at x under a load that is spread evenly, m."""
+    """Return the deflection of a clamped beam at x under a uniform load, m."""
     return load_per_length * x**2 * (x**2 + 6 * length**2 - 4 * length * x) / (24 * STIFFNESS)
 
 
 def settled(small_model: ModelMaker, follow: Follow, n: int, axis: int, slope: float) -> tuple[float, ...]:
-    """Return gravity and the sags of the voxels of a bar, m, when it rests."""
+    """Return gravity and the sags of the voxels of a bar at rest, m."""
     gravity = slope * 6 * STIFFNESS / (WEIGHT_PER_G / L * ((n - 1) * L) ** 3)
     slowest = 1.875**2 * math.sqrt(STIFFNESS * L / WEIGHT_PER_G) / ((n - 1) * L) ** 2  # rad/s
     fastest = math.sqrt(5e6 * L / WEIGHT_PER_G)
-    # Half of what is critical; more than 0.05 would be too much for rotation, which it damps more.
+    # Half of critical damping, at most 0.05: rotation has stronger damping.
     damping = min(0.05, 0.5 * slowest / fastest)
     canvas = (n, 1, 1) if axis == 0 else (1, n, 1)
     options = {"gravity": -gravity, "duration": 30 / (damping * fastest), "slow_damping": damping}
@@ -57,7 +57,7 @@ def settled(small_model: ModelMaker, follow: Follow, n: int, axis: int, slope: f
 def test_a_bar_bends_like_a_beam(
     small_model: ModelMaker, follow: Follow, n: int, axis: int, say: Callable[[str], None]
 ) -> None:
-    """Rounding of small angles and the square of the slope, 1e-3, are what is left."""
+    """The remaining differences are rounding of small angles and the square of the slope, 1e-3."""
     gravity, *sag = settled(small_model, follow, n, axis, slope=1e-3)
     points = under_points(np.arange(1, n) * L, WEIGHT_PER_G * gravity)
     spread = under_own_weight((n - 1) * L, (n - 0.5) * L, WEIGHT_PER_G * gravity / L)
@@ -71,8 +71,8 @@ def test_a_bar_bends_like_a_beam(
     assert abs(sag[-1] / spread - 1) < 0.25 / n**2
 
 
-def test_larger_loads_bend_it_less_than_in_proportion(small_model: ModelMaker, follow: Follow) -> None:
-    """As every elastica: its lever shortens."""
+def test_deflection_grows_less_than_large_loads(small_model: ModelMaker, follow: Follow) -> None:
+    """As in every elastica, the lever becomes shorter."""
     gravity, *sag = settled(small_model, follow, 6, 0, slope=1.0)
     small = under_points(np.arange(1, 6) * L, WEIGHT_PER_G * gravity)[-1]
     assert 0.5 * small < sag[-1] < 0.95 * small

@@ -1,7 +1,7 @@
-"""Which contacts the solver looks at: with ``complete_contacts`` all, against every pair in every step.
+"""The list of contact candidates: complete with ``complete_contacts``, compared with all pairs in every step.
 
-Bodies whose voxels meet at edges and corners only have no bonds, so that contacts, weight and the floor are
-all that acts on them, and the equations are short enough to be written out.
+Bodies whose voxels share only edges and corners have no bonds. Only contacts, weight and the floor act on
+them, so that their equations are short.
 """
 
 import math
@@ -30,7 +30,7 @@ PALETTE = {
 
 
 class Particles:
-    """Voxels without bonds, every pair of which is looked at in every step."""
+    """Voxels without bonds, with a check of every pair in every step."""
 
     def __init__(self, model: Model, body: NDArray[np.uint8], phase: Floats) -> None:
         self.s = model.settings
@@ -47,7 +47,7 @@ class Particles:
         self.dt = 0.9 / (2 * 3.1415926 * math.sqrt((self.modulus / self.mass).max()))
 
     def contacts(self) -> tuple[Floats, Floats]:
-        """Return the forces of all pairs that touch and their torques, added up for each voxel."""
+        """Return the sums of contact forces and torques for each voxel."""
         i, j = np.triu_indices(len(self.at), 1)
         apart = self.at[j] - self.at[i]
         distance = np.linalg.norm(apart, axis=1)
@@ -61,7 +61,7 @@ class Particles:
         count = np.bincount(np.concatenate([i, j]), minlength=len(self.at))
         sharing = self.dt * np.maximum(
             count[i], count[j]
-        )  # no step takes more than there is, all contacts together
+        )  # all contacts together at most stop the motion in a step
         damper = np.minimum(
             self.s.contact_damping * 2 * np.sqrt(stiffness / lightness), 1 / (sharing * lightness)
         )
@@ -81,7 +81,7 @@ class Particles:
         return total, torque
 
     def floor(self, force: Floats) -> Floats:
-        """Return the force that the floor adds; it sets the lateral speed of what it stops to zero."""
+        """Return the force of the floor; lateral speeds of sticking voxels are set to zero."""
         deep = np.maximum(0.0, self.size / 2 - self.at[:, 2])
         push = 2 * self.modulus * L * deep
         added = np.zeros_like(force)
@@ -114,7 +114,7 @@ class Particles:
         self.time += self.dt
 
     def follow(self, steps: int) -> Floats:
-        """Return where all are at the start and after each step, ``[step, voxel, xyz]``, m."""
+        """Return the positions at the start and after each step, ``[step, voxel, xyz]``, m."""
         rows = [self.at.copy()]
         for _ in range(steps):
             self.step()
@@ -123,7 +123,7 @@ class Particles:
 
 
 def off(model: Model, follow: Follow, body: NDArray[np.uint8], phase: Floats, steps: int = STEPS) -> float:
-    """Return by how much the solver and the particles differ, lattice edges."""
+    """Return the difference between solver and particles, lattice edges."""
     voxels = follow(model, body, phase, range(steps + 1), ["voxels"])["voxels"]
     order = voxels.transpose(0, 3, 2, 1, 4)[:, body.transpose(2, 1, 0) > 0]
     return float(np.abs(order - Particles(model, body, phase).follow(steps)).max() / L)
@@ -131,7 +131,7 @@ def off(model: Model, follow: Follow, body: NDArray[np.uint8], phase: Floats, st
 
 @st.composite
 def loose_bodies(draw: st.DrawFn) -> tuple[NDArray[np.uint8], Floats]:
-    """Voxels no two of which share a face, and their phases."""
+    """Draw voxels without common faces, and their phases."""
     canvas = draw(st.tuples(*(st.integers(1, 3),) * 3))
     odd = np.indices(canvas).sum(axis=0) % 2
     body = draw(arrays.arrays(np.uint8, canvas, elements=st.integers(0, 3))) * (odd == 0)
@@ -156,7 +156,7 @@ surroundings = st.fixed_dictionaries(
 
 
 @given(body=loose_bodies(), options=surroundings)
-def test_a_complete_list_misses_nothing(
+def test_a_complete_list_contains_all_contacts(
     small_model: ModelMaker, follow: Follow, body: tuple[NDArray[np.uint8], Floats], options: dict[str, Any]
 ) -> None:
     model = small_model(body[0].shape, palette=PALETTE, complete_contacts=True, **options)
@@ -165,13 +165,13 @@ def test_a_complete_list_misses_nothing(
 
 @pytest.mark.parametrize("horizon", [1.0, 2.0, 4.0])
 @pytest.mark.parametrize("gap", [3, 4, 5, 6])
-def test_a_complete_list_foresees_that_both_may_move(
+def test_a_complete_list_allows_for_motion_of_both_voxels(
     small_model: ModelMaker, follow: Follow, horizon: float, gap: int
 ) -> None:
-    """Two that were born too close to others fly at each other from both ends of the canvas."""
+    """Two voxels that start too close to others fly towards each other from both ends of the canvas."""
     body = np.zeros((gap + 3, 2, 1), np.uint8)
     body[[0, 1, gap + 1, gap + 2], [0, 1, 1, 0], 0] = 4
-    alone = {4: PALETTE[4]}  # no other material that grows, and would make the list longer
+    alone = {4: PALETTE[4]}  # no other material that grows and lengthens the list
     options = {"collision_envelope": 2.0, "collision_horizon": horizon, "slow_damping": 0.0, "duration": 0.3}
     model = small_model(body.shape, palette=alone, complete_contacts=True, **options)
     steps = int(model.time_steps(body[None])[1][0])
@@ -206,10 +206,10 @@ def test_the_engines_list_may_miss_contacts(
     assert off(published, follow, body, phase) > 1e-4
 
 
-def test_the_engines_list_goes_by_the_size_of_the_first_voxel(
+def test_the_engines_list_depends_on_the_size_of_the_first_voxel(
     small_model: ModelMaker, follow: Follow
 ) -> None:
-    """Of two that fall, so that the list is made anew, one has shrunk and one has grown into it."""
+    """Of two falling voxels, so that the list is rebuilt, one has shrunk and the other has grown into it."""
     body = np.diag([2, 1]).astype(np.uint8)[..., None]
     options = {"palette": PALETTE, "period": 0.1, "temperature_amplitude": 25.0, "gravity": -100.0}
     lists = {}
@@ -220,8 +220,8 @@ def test_the_engines_list_goes_by_the_size_of_the_first_voxel(
     assert lists["shrunk first"] > 1e-6
 
 
-def test_what_is_close_along_bonds_never_collides(small_model: ModelMaker, follow: Follow) -> None:
-    """Whatever the list: a bar of four within three bonds of each other is free of contacts."""
+def test_voxels_within_a_few_bonds_never_collide(small_model: ModelMaker, follow: Follow) -> None:
+    """With any list, four voxels within three bonds of each other have no contacts."""
     model = small_model((2, 2, 1), complete_contacts=True, collision_envelope=2.0)
     voxels = follow(model, [[1, 1], [1, 0]], tracks=["voxels"])["voxels"]
     free = small_model((2, 2, 1), self_collision=False)

@@ -1,6 +1,6 @@
-"""How voxels that touch push each other: the engine's law, and envelope, damping and friction (section 10).
+"""Forces between touching voxels: engine's law, envelope, damping, friction (docs/physics.md, section 10).
 
-Pairs that have no bond are corner to corner, 1.414 edges apart, or in one column with a gap.
+Pairs without a bond are diagonal, 1.414 edges apart, or in one column with a gap.
 """
 
 import math
@@ -26,7 +26,7 @@ def harmonic(a: float, b: float) -> float:
 
 
 def first_push(model: Model, follow: Follow, body: Any) -> Any:
-    """Displacements after one step, in which nothing acts but contacts: sizes are still those at rest."""
+    """Return the displacements after one step with contact forces only; sizes are still those at rest."""
     moved = follow(model, body, steps=[0, 1], tracks=["voxels"])["voxels"]
     return moved[1] - moved[0]
 
@@ -63,8 +63,8 @@ def test_diagonal_voxels_on_a_path_of_two_bonds_do_not_collide(
     assert not first_push(small_model((2, 2, 1)), follow, body)[body > 0].any()
 
 
-def test_paths_lead_over_existing_bonds_only(small_model: ModelMaker, follow: Follow) -> None:
-    """Clamped neighbours have no bond, so no path joins the free corner of a square to its opposite."""
+def test_paths_consist_of_existing_bonds_only(small_model: ModelMaker, follow: Follow) -> None:
+    """Clamped neighbors have no bond, so no path connects the free corner of a square to the opposite one."""
     held = np.array([[FIX_ALL, FIX_ALL], [FIX_ALL, 0]])
     model = small_model((2, 2, 1), fixed=held)
     push = 5e6 * L * (1.5 * L - DIAGONAL) / math.sqrt(2)
@@ -91,7 +91,7 @@ def test_the_published_law_is_the_default(small_model: ModelMaker, follow: Follo
 
 @pytest.mark.parametrize("envelope", [1.0, 1.41, 1.42, 1.5, 1.7, 2.0])
 @pytest.mark.parametrize("options", [{}, {"contact_damping": 1.0}, {"complete_contacts": True}])
-def test_the_envelope_says_where_the_push_begins(
+def test_the_envelope_determines_where_repulsion_starts(
     small_model: ModelMaker, follow: Follow, envelope: float, options: dict[str, Any]
 ) -> None:
     model = small_model((2, 2, 1), collision_envelope=envelope, **options)
@@ -106,7 +106,7 @@ def test_the_envelope_says_where_the_push_begins(
 def test_the_envelope_grows_with_both_voxels(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """Two that do not touch at rest, of which one grows: their mean size counts."""
+    """Of two voxels that do not touch at rest one grows: the mean size matters."""
     palette = {1: material(), 2: material(expansion=0.01)}
     model = small_model((2, 2, 1), palette=palette, collision_envelope=1.35, period=1e9)
     moved = follow(model, np.diag([1, 2]), 0.25, range(3), ["voxels"])["voxels"][:, 1, 1, 0]
@@ -122,7 +122,7 @@ def test_the_envelope_grows_with_both_voxels(
 
 
 def fall(small_model: ModelMaker, follow: Follow, **changes: Any) -> dict[str, NDArray[np.float64]]:
-    """Let a voxel fall on a clamped one from two edges above it, and follow its height and speed."""
+    """Drop a voxel on a clamped one from two edges above, and return its height and speed."""
     options = {"collision_envelope": 1.0, "gravity": -9.81, "slow_damping": 0.0, "time_step_fraction": 0.1}
     options |= {"duration": 0.4, "complete_contacts": True} | changes
     model = small_model((1, 1, 4), fixed=[FIX_ALL, 0, 0, 0], **options)
@@ -131,23 +131,24 @@ def fall(small_model: ModelMaker, follow: Follow, **changes: Any) -> dict[str, N
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.1, 0.3, 0.7])
-def test_rebound_is_that_of_a_spring_with_a_damper(
+def test_rebound_agrees_with_a_damped_spring(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, damping: float
 ) -> None:
-    """The push ends where the damper outweighs the spring, for it never pulls: of critical damping z,
-    the share exp(-z / sqrt(1 - z^2) * acos(2 z^2 - 1)) of the speed is left (z below 0.7, no weight).
+    """The contact force ends when the damper exceeds the spring, as it is never attractive. For damping z,
+    as a fraction of critical, exp(-z / sqrt(1 - z^2) * acos(2 z^2 - 1)) of the speed remains (z below
+    0.7, no weight).
     """
     stiff = {1: material(youngs_modulus=5e8)}
     speed = fall(small_model, follow, palette=stiff, contact_damping=damping)["speed"]
-    # One end is clamped, but the damper takes its mass for what it is: half a mass is reduced.
+    # The damper uses the mass of the clamped end as well: the reduced mass is half a mass.
     z = damping / math.sqrt(2)
     expected = math.exp(-z / math.sqrt(1 - z**2) * math.acos(2 * z**2 - 1))
     assert speed.max() / -speed.min() == pytest.approx(expected, abs=0.02)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.3, 1.0, 10.0, 1000.0])
-def test_damping_never_pulls(small_model: ModelMaker, follow: Follow, damping: float) -> None:
-    """Two voxels that were born too close part ever faster, and keep their speed once they are free."""
+def test_damping_is_never_attractive(small_model: ModelMaker, follow: Follow, damping: float) -> None:
+    """Two voxels that start too close separate with increasing speed, and keep it after the contact."""
     model = small_model((2, 2, 1), contact_damping=damping, slow_damping=0.0, duration=0.5)
     tracks = follow(model, np.eye(2), tracks=["voxels", "momentum", "energy"])
     way = tracks["voxels"][:, 1, 1, 0] - tracks["voxels"][:, 0, 0, 0]
@@ -157,7 +158,7 @@ def test_damping_never_pulls(small_model: ModelMaker, follow: Follow, damping: f
     assert np.abs(tracks["momentum"]).max() < 1e-12
 
 
-def test_damping_takes_energy(small_model: ModelMaker, follow: Follow) -> None:
+def test_damping_dissipates_energy(small_model: ModelMaker, follow: Follow) -> None:
     def left(damping: float) -> float:
         model = small_model((2, 2, 1), contact_damping=damping, slow_damping=0.0, duration=1.0)
         return float(follow(model, np.eye(2))["energy"][-1, 1])
@@ -169,8 +170,8 @@ def test_damping_takes_energy(small_model: ModelMaker, follow: Follow) -> None:
     assert energies[-1] < 0.2 * energies[0]
 
 
-def test_damping_acts_while_voxels_touch_only(small_model: ModelMaker, follow: Follow) -> None:
-    """Before they meet, a falling voxel falls freely."""
+def test_damping_acts_only_on_touching_voxels(small_model: ModelMaker, follow: Follow) -> None:
+    """A voxel falls freely before the contact."""
     plain = fall(small_model, follow)
     damped = fall(small_model, follow, contact_damping=1.0)
     meet = int(np.flatnonzero(plain["height"] < 1.5 * L)[0])
@@ -195,7 +196,7 @@ def test_unequal_voxels_push_each_other_equally(
 def burst(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, frictions: tuple[float, float]
 ) -> dict[str, NDArray[np.float64]]:
-    """Follow two heavy and two light voxels in a zigzag that were born too close and rub as they part."""
+    """Simulate two heavy and two light voxels in a zigzag that start too close and rub while separating."""
     palette = {
         1: material(dynamic_friction=frictions[0], density=3e6),
         2: material(dynamic_friction=frictions[1], density=3e5),
@@ -205,10 +206,10 @@ def burst(
     return follow(model, [[1, 0], [0, 2], [1, 0], [0, 2]])
 
 
-def test_friction_between_voxels_keeps_momentum_and_takes_energy(
+def test_friction_between_voxels_conserves_momentum_and_dissipates_energy(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """Linear and angular momentum stay what they were, nothing; what the contacts stored is not all left."""
+    """Linear and angular momentum remain zero; the energy of the contacts is not fully recovered."""
     stored = 3 * 0.5 * 5e6 * L * (1.9 * L - DIAGONAL) ** 2
     left = []
     for friction in (0.0, 0.1, 0.5):
@@ -220,7 +221,7 @@ def test_friction_between_voxels_keeps_momentum_and_takes_energy(
     assert left[1] > left[2] + 0.01
 
 
-def test_voxels_that_meet_head_on_do_not_rub(
+def test_head_on_contacts_have_no_friction(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     rough = {1: material(dynamic_friction=5.0)}
@@ -229,7 +230,7 @@ def test_voxels_that_meet_head_on_do_not_rub(
     assert np.abs(plain["height"] - rubbed["height"]).max() < 1e-14
 
 
-def test_friction_is_the_mean_of_both(
+def test_friction_is_the_mean_of_both_voxels(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     alike, mixed, other = (

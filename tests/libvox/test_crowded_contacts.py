@@ -1,4 +1,4 @@
-"""A voxel that touches many others: all their dampers and frictions take motion, and never give any."""
+"""A voxel with many contacts: all dampers and frictions together never add energy."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ PALETTE = {1: Material(5e6, 0.35, 1e6, 0.0, 1.0, 0.5), 2: Material(5e6, 0.35, 1e
 
 
 def bed(code: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Return a held floor of 25 voxels and one above its middle, with a gap between, and what is fixed."""
+    """Return a bed of 25 clamped voxels with one above its center and a gap, and the fixed cells."""
     body, fixed = np.zeros(CANVAS, np.uint8), np.zeros(CANVAS, np.uint8)
     body[:, :, 0] = code
     fixed[:, :, 0] = FIX_ALL
@@ -24,7 +24,7 @@ def bed(code: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
 
 
 def energies(body: Any, fixed: Any, **changes: Any) -> NDArray[np.float64]:
-    """Return the kinetic energy after every step, under a weight that presses the voxel into the bed."""
+    """Return the kinetic energy after every step, with a weight that presses the voxel into the bed."""
     options: dict[str, Any] = {
         "voxel_size": L,
         "duration": 2.0,
@@ -48,23 +48,25 @@ def test_a_pressed_voxel_comes_to_rest(code: int, substeps: int) -> None:
     body, fixed = bed(code)
     damped = energies(body, fixed, contact_damping=1.0, contact_friction=True, substeps=substeps)
     assert np.isfinite(damped).all()
-    assert damped.max() > 0.5  # J, as it falls
+    assert damped.max() > 0.5  # J, while falling
     assert damped[-1] < 1e-12 * damped.max()
 
 
 @given(st.floats(0.5, 1000.0), st.booleans(), st.sampled_from([1.0, 1.5, 2.0]))
 @settings(deadline=None)
-def test_it_never_gains_more_than_its_weight_gives(damping: float, rubs: bool, envelope: float) -> None:
+def test_it_never_gains_more_energy_than_its_weight_supplies(
+    damping: float, rubs: bool, envelope: float
+) -> None:
     body, fixed = bed(2)
     options = {"contact_friction": rubs, "collision_envelope": envelope, "duration": 0.5}
     damped = energies(body, fixed, contact_damping=damping, **options)
-    assert damped.max() <= 125.0 * 9.81 * 2 * L  # J, of a fall through the whole gap
+    assert damped.max() <= 125.0 * 9.81 * 2 * L  # J, for a fall through the gap
     assert damped[-1] < damped.max()
 
 
 @pytest.mark.parametrize("damping", [4.0, 12.0, 100.0])
-def test_strong_damping_does_not_throw_back(damping: float) -> None:
-    """A damper that no step can bear would return more than it took."""
+def test_strong_damping_does_not_repel(damping: float) -> None:
+    """An unlimited damper would add energy in a step."""
     body, fixed = bed(1)
     rebound = energies(body, fixed, contact_damping=damping, gravity=-1.0, collision_envelope=1.0)
     fall = int(np.argmax(rebound))

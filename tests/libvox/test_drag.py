@@ -1,4 +1,4 @@
-"""Drag of a fluid on the outer surface: C A (v n)^2 on each facet that moves against it (section 7)."""
+"""Drag of a fluid: C A (v n)^2 on each facet of the outer surface that moves against it (section 7)."""
 
 import math
 from collections.abc import Callable
@@ -17,7 +17,7 @@ L = 0.05
 AREA = float(np.float32(L)) ** 2  # of a face at rest, m2
 MASS = 125.0  # kg
 G = -9.81
-DRAG = 750.0 * 1e4  # kg/m3; voxels are a thousand times as heavy as water, and a few edges deep
+DRAG = 750.0 * 1e4  # kg/m3; voxels are 1000 times as dense as water
 
 
 def time_step(model: Model, body: Any = 1) -> float:
@@ -40,7 +40,7 @@ def test_a_falling_voxel_follows_the_equation(small_model: ModelMaker, follow: F
     z, dt = follow(model)["body"][:, 2], time_step(model)
     speed, expected = 0.0, [L / 2]
     for n in range(len(z) - 1):
-        area = AREA if n else L**2  # sizes lag by a step
+        area = AREA if n else L**2  # sizes lag by one step
         speed += dt * (G + DRAG * area * speed**2 / MASS)
         expected.append(expected[-1] + speed * dt)
     assert np.abs(z - expected).max() < 1e-13
@@ -48,7 +48,7 @@ def test_a_falling_voxel_follows_the_equation(small_model: ModelMaker, follow: F
 
 
 @pytest.mark.parametrize("fluid_drag", [DRAG / 4, DRAG, DRAG * 4])
-def test_terminal_speed_goes_with_the_root_of_the_fluid(
+def test_terminal_speed_depends_on_the_root_of_the_drag(
     small_model: ModelMaker, follow: Follow, fluid_drag: float
 ) -> None:
     model = small_model((1, 1, 1), gravity=G, fluid_drag=fluid_drag, slow_damping=0.0, duration=2.0)
@@ -57,10 +57,10 @@ def test_terminal_speed_goes_with_the_root_of_the_fluid(
 
 
 @pytest.mark.parametrize("canvas", [(1, 1, 4), (4, 1, 1), (3, 2, 1), (2, 3, 2), (3, 3, 3)])
-def test_terminal_speed_goes_with_weight_and_area(
+def test_terminal_speed_depends_on_weight_and_area(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, canvas: tuple[int, int, int]
 ) -> None:
-    """Of a body so stiff that its shape stays what it was; only the faces below count."""
+    """The body is too stiff to deform; only its lower faces count."""
     stiff = {1: material(youngs_modulus=5e8)}
     options = {"gravity": G, "fluid_drag": DRAG, "slow_damping": 0.0, "duration": 0.7}
     model = small_model(canvas, palette=stiff, **options)
@@ -68,7 +68,7 @@ def test_terminal_speed_goes_with_weight_and_area(
     assert final_speed(model, follow) == pytest.approx(expected, rel=1e-3)
 
 
-def test_grown_voxels_feel_more(small_model: ModelMaker, follow: Follow) -> None:
+def test_grown_voxels_have_more_drag(small_model: ModelMaker, follow: Follow) -> None:
     options = {"gravity": G, "fluid_drag": DRAG, "slow_damping": 0.0, "duration": 1.0, "period": 1e9}
     model = small_model((1, 1, 1), **options)
     steps = int(model.time_steps(np.full((1, 1, 1, 1), 3, np.uint8))[1][0])
@@ -76,22 +76,22 @@ def test_grown_voxels_feel_more(small_model: ModelMaker, follow: Follow) -> None
     assert (z[0] - z[1]) / time_step(model, 3) == pytest.approx(terminal_speed(1, 1) / 1.144714, rel=1e-5)
 
 
-def test_facets_push_along_their_normals(small_model: ModelMaker, follow: Follow) -> None:
-    """Two voxels part along the diagonal of their faces: each face ahead takes half of the square."""
+def test_drag_is_normal_to_facets(small_model: ModelMaker, follow: Follow) -> None:
+    """Two voxels separate along the diagonal of their faces: each face in front gets half of the square."""
     model = small_model((2, 2, 1), fluid_drag=DRAG, slow_damping=0.0, duration=1.0, voxel_size=0.0625)
     area, mass, dt = 0.0625**2, 1e6 * 0.0625**3, time_step(model, np.eye(2)[..., None])
     voxels = follow(model, np.eye(2), tracks=["voxels"])["voxels"][:, 1, 1, 0]
     assert np.abs(voxels[:, 0] - voxels[:, 1]).max() < 1e-15
     speed = np.diff(voxels[:, 0]) / dt
-    apart = 2 * (voxels[:, 0] - 0.0625) > 1.5 * 0.0625 / math.sqrt(2)  # no contact any more
+    apart = 2 * (voxels[:, 0] - 0.0625) > 1.5 * 0.0625 / math.sqrt(2)  # no longer in contact
     free = np.flatnonzero(apart)[0]
     assert len(speed) - free > 100
     expected = speed[free:-1] - dt * DRAG * area * speed[free:-1] ** 2 / mass
     assert speed[free + 1 :] == pytest.approx(expected, rel=1e-9)
 
 
-def test_drag_only_takes_energy(small_model: ModelMaker, follow: Follow) -> None:
-    """A body that is left alone after a kick loses it faster in a fluid, and at rest it stays at rest."""
+def test_drag_never_adds_energy(small_model: ModelMaker, follow: Follow) -> None:
+    """A body loses the energy of a kick faster in a fluid, and a body at rest remains at rest."""
     rng = np.random.default_rng(12)
     body, phase = rng.choice([0, 1, 3, 3], (4, 3, 3)), rng.uniform(0.0, 0.25, (4, 3, 3))
     options = {"slow_damping": 0.0, "bond_damping": 0.0, "period": 1e9, "self_collision": False}
@@ -107,12 +107,12 @@ def test_drag_only_takes_energy(small_model: ModelMaker, follow: Follow) -> None
     assert energies(DRAG, 0.0).max() < 1e-9
 
 
-def test_a_clamped_voxel_does_not_mind(small_model: ModelMaker, follow: Follow) -> None:
+def test_a_clamped_voxel_does_not_move(small_model: ModelMaker, follow: Follow) -> None:
     voxels = follow(small_model((2, 1, 1), fixed=[63, 63], fluid_drag=DRAG, gravity=G))["voxels"]
     assert (voxels == voxels[0]).all()
 
 
-# ---- what is inside
+# ---- cavities
 
 
 def falling_box(small_model: ModelMaker, material: MaterialMaker, follow: Follow, body: Any) -> float:
@@ -121,7 +121,7 @@ def falling_box(small_model: ModelMaker, material: MaterialMaker, follow: Follow
     return final_speed(small_model(np.shape(body), palette=stiff, **options), follow, body)
 
 
-def test_a_sealed_cavity_feels_no_fluid(
+def test_a_sealed_cavity_has_no_drag(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     box = np.ones((3, 3, 3))
@@ -129,8 +129,8 @@ def test_a_sealed_cavity_feels_no_fluid(
     assert falling_box(small_model, material, follow, box) == pytest.approx(terminal_speed(26, 9), rel=1e-3)
 
 
-def test_an_open_cavity_does(small_model: ModelMaker, material: MaterialMaker, follow: Follow) -> None:
-    """In a tunnel the fluid reaches three faces of the lid from below; a hole in the lid opens none."""
+def test_an_open_cavity_has_drag(small_model: ModelMaker, material: MaterialMaker, follow: Follow) -> None:
+    """A tunnel exposes three lower faces of the lid; a hole in the lid exposes none."""
     tunnel, pot = np.ones((3, 3, 3)), np.ones((3, 3, 3))
     tunnel[:, 1, 1] = 0
     pot[1, 1, 1:] = 0
@@ -142,7 +142,7 @@ def test_an_open_cavity_does(small_model: ModelMaker, material: MaterialMaker, f
 def test_fluid_does_not_pass_through_edges(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """A cavity that meets the notches in two sides at an edge stays sealed; their upper walls count."""
+    """A cavity that touches notches in two sides along an edge remains sealed; their upper walls count."""
     box = np.ones((3, 3, 4))
     box[1, 1, 1] = box[0, 1, 2] = box[2, 1, 2] = 0
     speed = falling_box(small_model, material, follow, box)

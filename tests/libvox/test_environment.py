@@ -1,4 +1,4 @@
-"""Longer motions, against traces of the original engine (see tests/data/environment/README.md)."""
+"""Longer motions, compared with traces of the original engine (see tests/data/environment/README.md)."""
 
 import json
 from collections.abc import Callable
@@ -14,21 +14,21 @@ from evoframe_libvox import KERNELS, Material, Model, Settings
 ENVIRONMENT = Path(__file__).parent.parent / "data" / "environment"
 CASES = sorted(path.stem for path in ENVIRONMENT.glob("*.npz"))
 
-# What is asked for is 1e-7 m, or ten times a case's own sensitivity; the solver keeps to this.
+# The requirement is 1e-7 m, or ten times the sensitivity of a case; the solver stays within these limits.
 LIMIT = 1e-9
-LIMITS = {"06_active_bar_inphase": 1e-8}  # other arithmetic moves it by so much (physics.md, section 16)
+LIMITS = {"06_active_bar_inphase": 1e-8}  # effect of other arithmetic (docs/physics.md, 16)
 
 
 def largest(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     return float(np.nanmax(np.abs(a - b)))
 
 
-def test_all_cases_are_there() -> None:
+def test_all_cases_exist() -> None:
     assert [name[:2] for name in CASES] == [f"{n:02}" for n in range(1, 19)]
 
 
 def load(name: str, **how: Any) -> tuple[dict[str, NDArray[Any]], dict[str, Any], Model]:
-    """Return the arrays of a case, what it is, and its model."""
+    """Return the arrays of a case, its description and its model."""
     with np.load(ENVIRONMENT / f"{name}.npz") as file:
         golden = dict(file)
     case = json.loads(str(golden["case"]))
@@ -39,7 +39,7 @@ def load(name: str, **how: Any) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
 
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("name", CASES)
-def test_motion_is_the_engines(name: str, kernel: str, say: Callable[[str], None]) -> None:
+def test_motion_agrees_with_the_engine(name: str, kernel: str, say: Callable[[str], None]) -> None:
     golden, case, model = load(name, kernel=kernel)
     body = golden["material"]
     dt, steps = model.time_steps(body[None])
@@ -61,8 +61,8 @@ def test_motion_is_the_engines(name: str, kernel: str, say: Callable[[str], None
     assert not result.diverged_step.any()
 
 
-def test_a_mirrored_bimorph_bends_as_far_off_as_the_engines() -> None:
-    """The frame of a bond is that of its lower voxel: 3.9e-5 m, and 7e-6 m sideways (physics.md, 12.3)."""
+def test_a_mirrored_bimorph_deviates_like_in_the_engine() -> None:
+    """A bond has the frame of its lower voxel: 3.9e-5 m, and 7e-6 m sideways (docs/physics.md, 12.3)."""
     golden, _, model = load("07_bimorph_20x8x8")
     body = golden["material"]
     batch = np.stack([body, body[:, :, ::-1]])

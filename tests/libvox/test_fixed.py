@@ -1,4 +1,4 @@
-"""Voxels that lack some or all degrees of freedom (physics.md, section 8)."""
+"""Voxels that are clamped in some or all degrees of freedom (docs/physics.md, section 8)."""
 
 from collections.abc import Callable
 from typing import Any
@@ -18,7 +18,7 @@ POSITION, ROTATION = 7, 56
 MASS, STIFFNESS = 125.0, 5e6 * L
 
 
-def test_clamped_voxels_stay_and_still_change_their_size(small_model: ModelMaker, follow: Follow) -> None:
+def test_clamped_voxels_do_not_move_but_change_their_size(small_model: ModelMaker, follow: Follow) -> None:
     voxels = follow(small_model((2, 1, 1), fixed=[FIX_ALL, 0]), [3, 1], 0.25)["voxels"]
     assert (voxels[:, 0, 0, 0] == L / 2).all()
     assert voxels[:, 1, 0, 0, 0].max() > 1.5 * L * 1.02
@@ -34,7 +34,7 @@ def held_bodies(draw: st.DrawFn) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
 
 
 @given(held=held_bodies(), floor=st.booleans(), drag=st.sampled_from([0.0, 1e6]))
-def test_held_coordinates_never_change_and_free_ones_may(
+def test_clamped_coordinates_never_change_and_free_ones_may(
     small_model: ModelMaker,
     follow: Follow,
     held: tuple[NDArray[np.uint8], NDArray[np.uint8]],
@@ -54,8 +54,8 @@ def test_held_coordinates_never_change_and_free_ones_may(
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_a_voxel_moves_along_what_is_left_to_it(small_model: ModelMaker, follow: Follow, axis: int) -> None:
-    """Between the diagonal neighbours that push it, one that can only move along an axis does so."""
+def test_a_voxel_moves_along_its_free_axis(small_model: ModelMaker, follow: Follow, axis: int) -> None:
+    """A voxel between diagonal neighbors that push it moves along its only free axis."""
     held = np.zeros((2, 2, 2))
     held[0, 0, 0], held[1, 1, 1] = FIX_ALL, FIX_ALL - (1 << axis)
     body = np.zeros((2, 2, 2))
@@ -70,14 +70,16 @@ def test_a_voxel_moves_along_what_is_left_to_it(small_model: ModelMaker, follow:
 
 
 def bar(small_model: ModelMaker, follow: Follow, held: tuple[int, int], **changes: Any) -> Any:
-    """Return the positions after each step of two voxels side by side that sag until they rest."""
+    """Return the positions after each step of two adjacent voxels that sag until they rest."""
     options = {"gravity": -0.2, "duration": 10.0, "slow_damping": 0.03} | changes
     voxels = follow(small_model((2, 1, 1), fixed=held, **options), tracks=["voxels"])["voxels"]
     return voxels[:, :, 0, 0]
 
 
-def test_what_cannot_turn_carries_and_what_can_gives_way(small_model: ModelMaker, follow: Follow) -> None:
-    """A clamped end carries a free one 4 m g / (E L) below it, and a guided one a quarter of that."""
+def test_a_clamped_rotation_carries_a_load_and_a_free_one_yields(
+    small_model: ModelMaker, follow: Follow
+) -> None:
+    """A free end sags by 4 m g / (E L) below a clamped one, and a guided end by a quarter of that."""
     sag = MASS * 0.2 / STIFFNESS
     clamped = bar(small_model, follow, (FIX_ALL, 0))
     guided = bar(small_model, follow, (FIX_ALL, ROTATION))
@@ -85,7 +87,7 @@ def test_what_cannot_turn_carries_and_what_can_gives_way(small_model: ModelMaker
     assert L / 2 - guided[-1, 1, 2] == pytest.approx(sag, rel=1e-4)
 
 
-def test_a_pinned_voxel_lets_the_other_swing_below_it(small_model: ModelMaker, follow: Follow) -> None:
+def test_the_other_voxel_swings_below_a_pinned_one(small_model: ModelMaker, follow: Follow) -> None:
     voxels = bar(small_model, follow, (POSITION, 0), gravity=-9.81, duration=60.0, slow_damping=0.01)
     assert (voxels[:, 0] == voxels[0, 0]).all()
     assert voxels[-1, 1] - voxels[-1, 0] == pytest.approx([0.0, 0.0, -L * (1 + 0.0981)], abs=2e-4 * L)
@@ -95,7 +97,7 @@ def test_a_pinned_voxel_lets_the_other_swing_below_it(small_model: ModelMaker, f
 def test_a_bar_under_gravity_turns_about_y_only(
     small_model: ModelMaker, follow: Follow, some: int, holds: int
 ) -> None:
-    """Holding another rotation changes nothing, holding this one is as good as holding all."""
+    """Clamping another rotation has no effect; clamping this one has the effect of clamping all."""
     partly, expected, other = (
         bar(small_model, follow, (POSITION + mask, mask), duration=0.5)
         for mask in (some, holds, ROTATION - holds)
@@ -105,7 +107,7 @@ def test_a_bar_under_gravity_turns_about_y_only(
 
 
 def test_a_voxel_that_cannot_turn_has_no_spin(small_model: ModelMaker, follow: Follow) -> None:
-    """Its angular momentum is that of its flight alone."""
+    """Its angular momentum comes only from its translation."""
     model = small_model((2, 1, 1), fixed=[FIX_ALL, ROTATION], gravity=-1.0)
     tracks = follow(model)
     expected = np.cross(tracks["voxels"][:, 1, 0, 0], tracks["momentum"][:, :3])

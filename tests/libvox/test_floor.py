@@ -1,4 +1,4 @@
-"""The floor's push: how deep a body rests, how it bounces, what a slope changes (physics.md, section 9)."""
+"""Normal force of the floor: depth at rest, rebound, and slope (docs/physics.md, section 9)."""
 
 import math
 from collections.abc import Callable
@@ -20,14 +20,14 @@ ON_FLOOR: dict[str, Any] = {"gravity": G, "floor": True}
 
 
 def depth(voxels: int, density: float = 1e6, youngs_modulus: float = 5e6) -> float:
-    """Return how deep a column of voxels rests in the floor, whose stiffness is 2 E L, m."""
+    """Return the depth of a resting column of voxels in the floor with stiffness 2 E L, m."""
     return voxels * density * L**3 * -G / (2 * youngs_modulus * L)
 
 
 @pytest.mark.parametrize(
     "substance", [{}, {"density": 3e6}, {"youngs_modulus": 2e7}, {"density": 2e5, "youngs_modulus": 1e6}]
 )
-def test_a_voxel_rests_as_deep_as_its_weight_asks(
+def test_the_depth_at_rest_depends_on_the_weight(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, substance: dict[str, float]
 ) -> None:
     palette = {1: material(**substance)}
@@ -44,7 +44,7 @@ def test_a_tower_rests_on_its_lowest_voxel(small_model: ModelMaker, follow: Foll
     assert tracks["strain"][-1] == pytest.approx([-2 * depth(3) / L, -2 * depth(1) / L], rel=1e-6)
 
 
-def test_each_voxel_is_pushed_by_its_own_stiffness(
+def test_the_normal_force_depends_on_each_voxels_stiffness(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     palette = {1: material(), 2: material(youngs_modulus=2e7, density=3e6)}
@@ -62,18 +62,18 @@ def test_a_grown_voxel_stands_higher(
     assert z == pytest.approx((SIZE + 0.144714242553 * L) / 2 - depth(1), abs=1e-12)
 
 
-def test_without_a_floor_it_falls_through(small_model: ModelMaker, follow: Follow) -> None:
+def test_without_a_floor_a_voxel_keeps_falling(small_model: ModelMaker, follow: Follow) -> None:
     assert follow(small_model((1, 1, 1), gravity=G, duration=0.3))["body"][-1, 2] < -L
 
 
-def test_the_floor_does_not_lift_what_is_above_it(small_model: ModelMaker, follow: Follow) -> None:
-    """Nor does it touch what starts exactly on it."""
+def test_the_floor_does_not_lift_voxels_above_it(small_model: ModelMaker, follow: Follow) -> None:
+    """A voxel that starts exactly on it is not touched either."""
     for floor in (True, False):
         model = small_model((1, 1, 2), gravity=0.0, floor=floor, voxel_size=0.0625)
         assert (follow(model)["voxels"] == follow(model)["voxels"][0]).all()
 
 
-def test_what_is_clamped_in_the_floor_stays(small_model: ModelMaker, follow: Follow) -> None:
+def test_a_clamped_voxel_in_the_floor_does_not_move(small_model: ModelMaker, follow: Follow) -> None:
     model = small_model((4, 1, 1), fixed=4 * [FIX_ALL], **ON_FLOOR, floor_slope=45.0)
     voxels = follow(model)["voxels"]
     assert (voxels == voxels[0]).all()
@@ -83,7 +83,7 @@ def test_what_is_clamped_in_the_floor_stays(small_model: ModelMaker, follow: Fol
 
 
 def restitution(model: Model, follow: Follow) -> float:
-    """Return the share of its speed with which a voxel that fell from ten edges leaves the floor."""
+    """Return the ratio of speeds after and before the rebound of a voxel dropped from ten edges."""
     track = follow(model, 10 * [0] + [1], tracks=["momentum", "body"])
     speed = track["momentum"][:, 2]
     lands = int(np.argmin(speed))
@@ -93,8 +93,8 @@ def restitution(model: Model, follow: Follow) -> float:
 
 @pytest.fixture(scope="module")
 def dropped(small_model: ModelMaker, material: MaterialMaker) -> Callable[[float], Model]:
-    """Make a model of a voxel that falls from a height of ten edges and is so stiff that its weight hardly
-    matters while it touches the floor.
+    """Create models of a voxel that falls from a height of ten edges and is so stiff that its weight is
+    negligible during the contact with the floor.
     """
     options = ON_FLOOR | {"slow_damping": 0.0, "time_step_fraction": 0.1, "duration": 0.7}
 
@@ -106,10 +106,10 @@ def dropped(small_model: ModelMaker, material: MaterialMaker) -> Callable[[float
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.1, 0.4, 0.8])
-def test_rebound_is_that_of_a_spring_with_a_damper(
+def test_rebound_agrees_with_a_damped_spring(
     dropped: Callable[[float], Model], follow: Follow, damping: float
 ) -> None:
-    """Of 2 E L and damping * 2 sqrt(m E L): damping / sqrt(2) of critical."""
+    """Spring 2 E L and damper damping * 2 sqrt(m E L): damping / sqrt(2) of critical."""
     share = damping / math.sqrt(2)
     expected = math.exp(-math.pi * share / math.sqrt(1 - share**2))
     assert restitution(dropped(damping), follow) == pytest.approx(expected, abs=0.02)
@@ -136,7 +136,7 @@ def test_the_fall_of_a_body_ends_at_rest(small_model: ModelMaker, follow: Follow
 
 @pytest.mark.parametrize("slope", [-30.0, -5.0, 0.0, 10.0, 40.0])
 def test_a_slope_changes_the_height_only(small_model: ModelMaker, follow: Follow, slope: float) -> None:
-    """The floor is z = x tan(slope); what rests on it, without friction, does not slide."""
+    """The floor is z = x tan(slope); a body at rest does not slide even without friction."""
     model = small_model((3, 1, 3), **ON_FLOOR, floor_slope=slope, duration=10.0, slow_damping=0.05)
     body = np.zeros((3, 1, 3))
     body[2, 0, 2] = 1
@@ -146,7 +146,7 @@ def test_a_slope_changes_the_height_only(small_model: ModelMaker, follow: Follow
     assert track[-1, 2] == pytest.approx(SIZE / 2 - depth(1) + rise, abs=1e-12)
 
 
-def test_a_slope_is_a_floor_for_each_voxel_of_its_own(small_model: ModelMaker, follow: Follow) -> None:
+def test_a_slope_has_its_own_height_at_each_voxel(small_model: ModelMaker, follow: Follow) -> None:
     model = small_model((5, 1, 4), **ON_FLOOR, floor_slope=20.0, duration=10.0, self_collision=False)
     body = np.zeros((5, 1, 4))
     body[[0, 2, 4], 0, [1, 2, 3]] = 1

@@ -1,7 +1,7 @@
-"""Dry friction on the floor: what sticks, what slides, and how far (physics.md, section 9).
+"""Dry friction on the floor: sticking, sliding and sliding distance (docs/physics.md, section 9).
 
-What slides here is one of two voxels that stand on the floor corner to corner, without a bond. When the
-actuation begins they grow into each other, part, and are free.
+The sliding voxel is one of two diagonal voxels on the floor without a bond. When the actuation starts, they
+grow into each other, separate, and slide freely.
 """
 
 import math
@@ -29,7 +29,7 @@ ON_FLOOR: dict[str, Any] = {"gravity": G, "floor": True, "slow_damping": 0.0}
 def slide(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, frictions: tuple[float, float]
 ) -> tuple[NDArray[np.float64], float]:
-    """Return where both voxels are on the floor once they have settled, ``[step, voxel, xy]``, and dt."""
+    """Return the positions of both voxels on the floor after settling, ``[step, voxel, xy]``, and dt."""
     palette = {i + 1: material(expansion=0.01, dynamic_friction=mu) for i, mu in enumerate(frictions)}
     options = {"start_time": 2.0, "period": 1e9, "collision_envelope": 1.4, "duration": 7.0}
     model = small_model((2, 2, 1), palette=palette, **ON_FLOOR, **options)
@@ -42,13 +42,13 @@ def slide(
 
 
 def slid(speed: float, deceleration: float, dt: float) -> float:
-    """Return the way of a voxel that loses the same speed in each step until it would turn around, m."""
+    """Return the distance of a voxel that loses the same speed in each step until it stops, m."""
     left = np.arange(1, math.ceil(speed / (deceleration * dt)))
     return float((speed - left * deceleration * dt).sum() * dt)
 
 
 @pytest.mark.parametrize("friction", [0.01, 0.02])
-def test_a_sliding_voxel_stops_where_friction_has_eaten_its_speed(
+def test_a_sliding_voxel_stops_at_the_expected_distance(
     small_model: ModelMaker,
     material: MaterialMaker,
     follow: Follow,
@@ -74,7 +74,7 @@ def test_a_sliding_voxel_stops_where_friction_has_eaten_its_speed(
         assert stopped < len(way) - 100
 
 
-def test_each_voxel_slides_with_its_own_friction(
+def test_each_voxel_has_its_own_friction(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     places, dt = slide(small_model, material, follow, (0.01, 0.02))
@@ -85,7 +85,7 @@ def test_each_voxel_slides_with_its_own_friction(
     assert expected[0] > 1.5 * expected[1]
 
 
-def test_without_friction_it_slides_on(
+def test_without_friction_a_voxel_keeps_sliding(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     places, dt = slide(small_model, material, follow, (0.0, 0.0))
@@ -97,7 +97,7 @@ def test_without_friction_it_slides_on(
 def test_friction_is_opposite_to_the_motion(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """It slides along the line on which it was pushed."""
+    """A voxel slides along the line of the push."""
     places, _ = slide(small_model, material, follow, (0.01, 0.01))
     way = places[:, 1] - places[0, 1]
     assert way[-1, 0] > 0.1 * L
@@ -106,11 +106,11 @@ def test_friction_is_opposite_to_the_motion(
 
 # ---- sticking
 
-SETTLED = 1500  # steps, of the pair of voxels below
+SETTLED = 1500  # steps, for the pair of voxels below
 
 
 class Pull:
-    """Two bonded voxels rest on the floor until they begin to shrink, evenly and slowly."""
+    """Two bonded voxels that rest on the floor until they start to shrink uniformly and slowly."""
 
     def __init__(
         self,
@@ -131,19 +131,19 @@ class Pull:
         )
 
     def follow(self, follow: Follow) -> NDArray[np.float64]:
-        """Return the x of both, against where they settled, after each step."""
+        """Return the displacement in x of both voxels since settling, after each step."""
         x = follow(self.model, [1, 2], 0.25, tracks=["voxels"])["voxels"][:, :, 0, 0, 0]
         shifts: NDArray[np.float64] = x - x[SETTLED]
         return shifts
 
     def force(self, steps: int) -> NDArray[np.float64]:
-        """Return the force of the bond in each step if neither moves; sizes lag by one step, N."""
+        """Return the force of the bond in each step if no voxel moves, N; sizes lag by one step."""
         time = (np.arange(steps) - 1) * self.dt
         share: NDArray[np.float64] = np.clip((time - self.start) / self.ramp, 0.0, 1.0)
         return -5e6 * L * L * self.strain * share
 
     def weight(self) -> float:
-        """Return the floor's push while the voxels sink as they shrink, without its damper's share, N."""
+        """Return the normal force, without damping, on voxels that sink while shrinking, N."""
         sinking = -L * self.strain / (2 * self.ramp)
         return WEIGHT - 0.8 * 2 * math.sqrt(125.0 * 5e6 * L) * sinking
 
@@ -180,17 +180,19 @@ def test_the_one_with_less_friction_breaks_free_alone(
 def test_a_clamped_voxel_is_not_braked(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """It needs no friction to stay, and none holds it."""
+    """Its momentum does not depend on friction."""
     x = Pull(small_model, material, (0.0, 0.09), held=FIX_ALL).follow(follow)
     assert not x[:, 0].any()
     assert x[-1, 1] < -1e-3 * L
 
 
-def test_friction_needs_a_push(small_model: ModelMaker, material: MaterialMaker, follow: Follow) -> None:
-    """Without a weight the roughest floor lets go."""
+def test_friction_requires_a_normal_force(
+    small_model: ModelMaker, material: MaterialMaker, follow: Follow
+) -> None:
+    """Without weight a voxel does not stick to the roughest floor."""
     palette = {3: material(expansion=0.01, static_friction=1e9, dynamic_friction=1e9)}
     model = small_model((2, 1, 1), palette=palette, floor=True, voxel_size=0.0625)
     without = small_model((2, 1, 1), palette=palette, floor=False, voxel_size=0.0625)
-    sizes = follow(model, 3, 0.6)["tip"]  # they shrink first: no corner is pressed into the floor
+    sizes = follow(model, 3, 0.6)["tip"]  # they shrink first, so that no corner touches the floor
     assert np.array_equal(sizes[:20], follow(without, 3, 0.6)["tip"][:20])
     assert np.ptp(sizes[:20, 0]) > 0.0

@@ -1,4 +1,4 @@
-"""Weight: free fall, terminal speed of slow damping, and what falls like what (physics.md, section 7)."""
+"""Weight: free fall, terminal speed of slow damping, comparison of bodies (docs/physics.md, section 7)."""
 
 import math
 from collections.abc import Callable
@@ -18,7 +18,7 @@ G = -9.81
 
 
 def fallen(n: NDArray[np.int64], gravity: float, dt: float) -> NDArray[np.float64]:
-    """Return how far semi-implicit Euler falls in n steps: a sum of n speeds, g dt^2 n (n + 1) / 2."""
+    """Return the fall of semi-implicit Euler in n steps: a sum of n speeds, g dt^2 n (n + 1) / 2."""
     return gravity * dt**2 * n * (n + 1) / 2
 
 
@@ -27,8 +27,8 @@ def time_step(model: Model, body: Any = 1) -> float:
     return float(model.time_steps(cells[None])[0][0])
 
 
-def test_a_voxel_without_weight_stays(small_model: ModelMaker, follow: Follow) -> None:
-    """Though it grows and shrinks."""
+def test_a_voxel_without_weight_does_not_move(small_model: ModelMaker, follow: Follow) -> None:
+    """Growth and shrinkage do not move it."""
     tip = follow(small_model((1, 1, 1)), 3, 0.3)["tip"]
     assert (tip == L / 2).all()
 
@@ -42,10 +42,8 @@ def test_a_voxel_falls_freely(small_model: ModelMaker, follow: Follow, gravity: 
     assert (body[:, :2] == L / 2).all()
 
 
-def test_a_voxel_falls_in_a_viscous_world_with_a_terminal_speed(
-    small_model: ModelMaker, follow: Follow
-) -> None:
-    """Slow damping brakes with c v, c = 0.01 * 2 sqrt(m E L)."""
+def test_slow_damping_limits_a_fall_to_a_terminal_speed(small_model: ModelMaker, follow: Follow) -> None:
+    """The force of slow damping is c v, c = 0.01 * 2 sqrt(m E L)."""
     model = small_model((1, 1, 1), gravity=G, duration=12.0, largest_distance=1e4)
     z, dt = follow(model)["body"][:, 2], time_step(model)
     drag = 0.01 * 2 * math.sqrt(125.0 * 5e6 * L) / 125.0
@@ -57,8 +55,8 @@ def test_a_voxel_falls_in_a_viscous_world_with_a_terminal_speed(
     assert np.abs(z - expected).max() < 1e-12
 
 
-def test_what_happens_within_a_body_does_not_change_its_fall(small_model: ModelMaker, follow: Follow) -> None:
-    """Bonds, contacts and actuation are internal forces; all voxels here have one mass."""
+def test_internal_forces_do_not_change_the_fall(small_model: ModelMaker, follow: Follow) -> None:
+    """Bonds, contacts and actuation are internal forces; all voxels have the same mass."""
     rng = np.random.default_rng(5)
     body, phase = rng.choice([0, 1, 3, 3], (4, 3, 3)), rng.uniform(-1, 1, (4, 3, 3))
     model = small_model((4, 3, 3), gravity=G, slow_damping=0.0, duration=0.5)
@@ -77,7 +75,7 @@ def test_heavy_and_light_fall_alike(small_model: ModelMaker, material: MaterialM
     assert z[-1, 0] < L / 2 - 0.04
 
 
-def test_a_body_of_two_densities_falls_unbent(
+def test_a_body_of_two_densities_does_not_bend_in_free_fall(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     palette = {1: material(), 2: material(density=7e6)}
@@ -87,6 +85,6 @@ def test_a_body_of_two_densities_falls_unbent(
     assert tracks["energy"][:, 0].max() < 1e-6 * tracks["energy"][-1, 1]
 
 
-def test_what_is_clamped_does_not_fall(small_model: ModelMaker, follow: Follow) -> None:
+def test_a_clamped_voxel_does_not_fall(small_model: ModelMaker, follow: Follow) -> None:
     voxels = follow(small_model((1, 1, 2), fixed=[FIX_ALL, FIX_ALL], gravity=G))["voxels"]
     assert (voxels == voxels[0]).all()

@@ -24,7 +24,7 @@ HEAVY: dict[str, Any] = {"gravity": -9.81, "fluid_drag": 1e5}
 
 @st.composite
 def bodies(draw: st.DrawFn) -> Body:
-    """A body that is not empty, a controller, and the degrees of freedom that its cells have not."""
+    """Draw a body that is not empty, a controller, and clamped degrees of freedom of cells."""
     canvas = draw(st.tuples(*(st.integers(1, 4),) * 3))
     material = draw(arrays.arrays(np.uint8, canvas, elements=st.sampled_from([0, 1, 2, 3, 4])))
     material[tuple(draw(st.integers(0, n - 1)) for n in canvas)] = 3
@@ -34,7 +34,7 @@ def bodies(draw: st.DrawFn) -> Body:
 
 
 def simulate(body: Body, **changes: Any) -> NDArray[np.float64]:
-    """Positions after every step."""
+    """Return the positions after every step."""
     material, phase, fixed = body
     options: dict[str, Any] = {
         "voxel_size": L,
@@ -59,17 +59,17 @@ def way(voxels: NDArray[np.float64]) -> float:
 
 
 def swapped(fixed: NDArray[Any], order: tuple[int, int, int]) -> NDArray[Any]:
-    """Return the masks of the same voxels if the axes are taken in another order."""
+    """Return the masks for a permutation of the axes."""
     total = np.zeros_like(fixed)
     for new, old in enumerate(order):
         total |= ((fixed >> old & 9) << new).astype(
             np.uint8
-        )  # 9: the bits of an axis's position and rotation
+        )  # 9: bits for translation along and rotation about an axis
     return total
 
 
 @given(bodies())
-def test_every_sample_is_finite_and_near(body: Body) -> None:
+def test_every_sample_is_finite_and_close(body: Body) -> None:
     voxels = simulate(body, **HEAVY, floor=True)
     occupied = voxels[:, body[0] > 0]
     assert np.isfinite(occupied).all()
@@ -77,8 +77,8 @@ def test_every_sample_is_finite_and_near(body: Body) -> None:
 
 
 @given(bodies(), st.permutations((0, 1, 2)))
-def test_the_axes_are_alike(body: Body, order: tuple[int, int, int]) -> None:
-    """Bonds point along +axis whatever the axis, and drag is the same along each."""
+def test_the_axes_are_equivalent(body: Body, order: tuple[int, int, int]) -> None:
+    """Bonds point along +axis for every axis, and drag is equal along all axes."""
     material, phase, fixed = (np.ascontiguousarray(a.transpose(order)) for a in body)
     options: dict[str, Any] = {"fluid_drag": 1e5, "complete_contacts": True}
     plain = simulate(body, **options)
@@ -87,12 +87,12 @@ def test_the_axes_are_alike(body: Body, order: tuple[int, int, int]) -> None:
 
 
 @given(bodies(), st.tuples(*(st.integers(0, 2),) * 3), st.booleans())
-def test_the_place_on_the_canvas_does_not_matter(
+def test_the_position_in_the_canvas_does_not_matter(
     body: Body,
     shift: tuple[int, int, int],
     floor: bool,
 ) -> None:
-    """Along x and y; along z if there is no floor."""
+    """Along x and y, and along z without a floor."""
     shift = (*shift[:2], 0 if floor else shift[2])
     options: dict[str, Any] = HEAVY | {"floor": floor}
     material, phase, fixed = (np.pad(a, [(n, 1) for n in shift]) for a in body)
@@ -104,13 +104,13 @@ def test_the_place_on_the_canvas_does_not_matter(
 
 @given(bodies(), st.integers(-6, 6))
 def test_whole_cycles_do_not_matter(body: Body, cycles: int) -> None:
-    """But for 2 pi, which the engine rounds to single precision."""
+    """Except for 2 pi, which the engine rounds to single precision."""
     material, phase, fixed = body
     assert apart(simulate((material, phase + cycles, fixed)), simulate(body)) < 1e-4 * L
 
 
 @given(bodies())
-def test_half_a_cycle_is_the_other_sign(body: Body) -> None:
+def test_half_a_cycle_changes_the_sign(body: Body) -> None:
     material, phase, fixed = body
     turned = simulate((material, phase + 0.5, fixed))
     assert apart(turned, simulate(body, temperature_amplitude=-14.4714242553)) < 1e-4 * L
@@ -118,7 +118,7 @@ def test_half_a_cycle_is_the_other_sign(body: Body) -> None:
 
 @given(bodies())
 def test_a_shorter_time_step_changes_little(body: Body) -> None:
-    """Half the step, every second sample."""
+    """Compare half the step, at every second sample."""
     options: dict[str, Any] = {"slow_damping": 0.0, "bond_damping": 0.0, "self_collision": False}
     coarse = simulate(body, time_step_fraction=0.02, **options)
     for fine in (
@@ -129,11 +129,11 @@ def test_a_shorter_time_step_changes_little(body: Body) -> None:
         assert apart(fine[2 : 2 * half + 1 : 2], coarse[1 : half + 1]) < 1e-2 * L
 
 
-# ---- mirrors and quarter turns: nearly, as the frame of a bond is that of its lower voxel (physics.md 12.3)
+# ---- mirrors and quarter turns: approximate, as bonds have the lower voxel's frame (docs/physics.md, 12.3)
 
 
 def mirrored(body: Body) -> tuple[Body, Any]:
-    """Return the body mirrored in y, and what that makes of the plain body's positions."""
+    """Return the body mirrored in y, and the transformation of positions."""
     width = body[0].shape[1] * L
     material, phase, fixed = (np.ascontiguousarray(a[:, ::-1]) for a in body)
 
@@ -145,7 +145,7 @@ def mirrored(body: Body) -> tuple[Body, Any]:
 
 
 def turned_about_z(body: Body) -> tuple[Body, Any]:
-    """Return the body turned by 90 degrees, x to y, and what that makes of the plain body's positions."""
+    """Return the body turned by 90 degrees, x to y, and the transformation of positions."""
     width = body[0].shape[1] * L
     material, phase, fixed = (np.ascontiguousarray(np.rot90(a, axes=(0, 1))) for a in body)
 
@@ -157,7 +157,7 @@ def turned_about_z(body: Body) -> tuple[Body, Any]:
 
 
 def turned_about_x(body: Body) -> tuple[Body, Any]:
-    """Return the body turned by 90 degrees, y to z, and what that makes of the plain body's positions."""
+    """Return the body turned by 90 degrees, y to z, and the transformation of positions."""
     height = body[0].shape[2] * L
     material, phase, fixed = (np.ascontiguousarray(np.rot90(a, axes=(1, 2))) for a in body)
 
@@ -174,10 +174,10 @@ SYMMETRIES = {"mirror": mirrored, "about z": turned_about_z, "about x": turned_a
 @pytest.mark.parametrize("symmetry", SYMMETRIES)
 @given(body=bodies(), strain=st.sampled_from([1e-3, 1e-4]))
 def test_small_motions_turn_with_the_body(symmetry: str, body: Body, strain: float) -> None:
-    """What differs is of the second order in the strain of the actuation."""
+    """Differences are of second order in the strain of the actuation."""
     other, expected = SYMMETRIES[symmetry](body)
     options: dict[str, Any] = {"temperature_amplitude": 100 * strain, "complete_contacts": True}
-    options |= {"collision_envelope": 1.0}  # no voxel is born pressed against another
+    options |= {"collision_envelope": 1.0}  # no contacts at the start
     plain = simulate(body, **options)
     assert apart(simulate(other, **options), expected(plain)) < 2.0 * strain**2 * L
 
@@ -198,7 +198,7 @@ def test_large_motions_nearly_turn_with_the_body(
 
 @given(bodies())
 def test_voxels_without_bonds_turn_exactly(body: Body) -> None:
-    """Contacts, weight, floor, friction and drag have no frame: to rounding, and with a floor about z."""
+    """Contacts, weight, floor, friction and drag have no frame: exact up to rounding (floor: about z)."""
     material, phase, fixed = body
     loose = np.where(np.indices(material.shape).sum(axis=0) % 2 == 0, material, 0).astype(np.uint8)
     loose[0, 0, 0] = 1
@@ -211,7 +211,7 @@ def test_voxels_without_bonds_turn_exactly(body: Body) -> None:
 
 
 def test_bodies_in_the_strategy_move() -> None:
-    """The laws are not about bodies at rest."""
+    """The laws are not tested on bodies at rest."""
     shape = (3, 2, 2)
     body = (np.full(shape, 3, np.uint8), np.linspace(0, 1, 12).reshape(shape), np.zeros(shape, np.uint8))
     assert way(simulate(body)) > 0.05 * L

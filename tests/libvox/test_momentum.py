@@ -1,8 +1,9 @@
-"""Momentum and energy: what is conserved, what is lost, and what the tracks say of it.
+"""Conservation and dissipation of momentum and energy, and their tracks.
 
-Forces come in equal pairs, so that a free body keeps its linear momentum to rounding, if both ends of its
-bonds are damped alike (physics.md, 12.7). A bond's moments balance its shear at the length of a lattice edge
-only (section 5: b2 L = 3 b3), so that angular momentum is kept to the second order of the deformation.
+Forces are equal and opposite, so that a free body conserves linear momentum up to rounding if both ends of
+its bonds have equal damping (docs/physics.md, 12.7). A bond's moments balance its shear only at the
+length of a lattice edge (section 5: b2 L = 3 b3), so that angular momentum is conserved to second order in
+the deformation.
 """
 
 import math
@@ -23,7 +24,7 @@ Follow = Callable[..., dict[str, NDArray[np.float64]]]
 L = 0.05
 CANVAS = (4, 3, 3)
 UNDAMPED: dict[str, Any] = {"slow_damping": 0.0, "bond_damping": 0.0}
-KICKED: dict[str, Any] = {"period": 1e9, "duration": 1.0}  # sizes jump at the first step and stay
+KICKED: dict[str, Any] = {"period": 1e9, "duration": 1.0}  # sizes jump in the first step and remain constant
 
 
 def some_body(seed: int = 3) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
@@ -46,13 +47,13 @@ def time_step(model: Model, body: NDArray[np.uint8]) -> float:
     ids=["alike", "stiffer", "contracting"],
 )
 @pytest.mark.parametrize("self_collision", [False, True])
-def test_a_free_body_keeps_its_momentum(
+def test_a_free_body_conserves_momentum(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, changes: Any, self_collision: Any
 ) -> None:
     assert drift(small_model, follow, material(**changes), self_collision=self_collision) < 1e-14
 
 
-def test_unequal_densities_keep_it_without_bond_damping(
+def test_unequal_densities_conserve_it_without_bond_damping(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
     assert drift(small_model, follow, material(density=3e6), bond_damping=0.0) < 1e-14
@@ -61,12 +62,12 @@ def test_unequal_densities_keep_it_without_bond_damping(
 def test_unequal_densities_lose_it_with_bond_damping(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """Each end is damped by its own constants, in the engine as here."""
+    """Each end is damped with its own constants, as in the engine."""
     assert drift(small_model, follow, material(density=3e6), bond_damping=1.0) > 1e-5
 
 
 def drift(small_model: ModelMaker, follow: Follow, passive: Material, **changes: Any) -> float:
-    """Return how far the centre of mass of a free, moving body wanders in 60 steps, m."""
+    """Return the displacement of the center of mass of a free, moving body in 60 steps, m."""
     palette = {1: passive, 3: Material(5e6, 0.35, 1e6, 0.01)}
     model = small_model(CANVAS, palette=palette, duration=1.0, slow_damping=0.0, **changes)
     body, phase = some_body()
@@ -77,10 +78,10 @@ def drift(small_model: ModelMaker, follow: Follow, passive: Material, **changes:
     return wander
 
 
-def test_the_force_that_unequal_ends_leave_is_their_dampers_difference(
+def test_the_net_force_of_unequal_ends_is_the_difference_of_their_dampers(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """Of two voxels whose bond is stretched by d in one step: sqrt(a1) (sqrt(m1) - sqrt(m2)) d / dt."""
+    """For a bond that is stretched by d in one step: sqrt(a1) (sqrt(m1) - sqrt(m2)) d / dt."""
     palette = {1: material(density=4e6), 3: material(expansion=0.01)}
     model = small_model((2, 1, 1), palette=palette, slow_damping=0.0, **KICKED)
     tracks = follow(model, [1, 3], 0.25, range(4))
@@ -96,7 +97,7 @@ def test_the_force_that_unequal_ends_leave_is_their_dampers_difference(
 
 
 def spins(small_model: ModelMaker, follow: Follow, amplitude: float, **changes: Any) -> tuple[float, float]:
-    """Return the largest angular momentum of a body that was kicked, and the one in its flying voxels."""
+    """Return the largest angular momentum of a kicked body, and that of its translating voxels."""
     model = small_model(CANVAS, temperature_amplitude=amplitude, **(UNDAMPED | KICKED | changes))
     body, phase = some_body()
     tracks = follow(model, body, phase)
@@ -105,7 +106,7 @@ def spins(small_model: ModelMaker, follow: Follow, amplitude: float, **changes: 
     return float(np.abs(tracks["momentum"][:, 3:]).max()), float(flying)
 
 
-def test_angular_momentum_is_kept_to_the_second_order(
+def test_angular_momentum_is_conserved_to_second_order(
     small_model: ModelMaker, follow: Follow, say: Callable[[str], None]
 ) -> None:
     sizes = (0.01, 0.1, 1.0)
@@ -117,16 +118,16 @@ def test_angular_momentum_is_kept_to_the_second_order(
         assert more / less == pytest.approx(100.0, rel=0.2)
 
 
-def test_a_chain_that_stretches_has_none(small_model: ModelMaker, follow: Follow) -> None:
-    """Nothing turns it: to rounding."""
+def test_a_stretching_chain_has_no_angular_momentum(small_model: ModelMaker, follow: Follow) -> None:
+    """No torque acts on it; exact up to rounding."""
     model = small_model((6, 1, 1), **UNDAMPED, **KICKED)
     tracks = follow(model, 3, [0.1, -0.2, 0.25, 0.0, 0.05, -0.1])
     assert tracks["energy"][:, 1].max() > 1.0
     assert np.abs(tracks["momentum"][:, 3:]).max() < 1e-12
 
 
-def test_contacts_keep_it(small_model: ModelMaker, follow: Follow) -> None:
-    """They push along the line between two voxels."""
+def test_contacts_conserve_it(small_model: ModelMaker, follow: Follow) -> None:
+    """Their forces act along the line between two voxels."""
     body = (np.indices((3, 3, 3)).sum(axis=0) % 2 == 0).astype(np.uint8)
     tracks = follow(small_model((3, 3, 3), slow_damping=0.0), body)
     assert tracks["energy"][-1, 1] > 1.0
@@ -140,8 +141,8 @@ def test_contacts_keep_it(small_model: ModelMaker, follow: Follow) -> None:
 def test_energy_stays_between_bounds_without_damping(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, held: int
 ) -> None:
-    """Semi-implicit Euler keeps T + V - dt/2 v K x: the energy of one spring swings by (1 + a) / (1 - a),
-    a = w0 dt / 2, and does not drift.
+    """Semi-implicit Euler conserves T + V - dt/2 v K x: the energy of a spring varies by the factor
+    (1 + a) / (1 - a), a = w0 dt / 2, and does not drift.
     """
     palette = {3: material(expansion=1e-4)}
     model = small_model(
@@ -158,7 +159,7 @@ def test_energy_stays_between_bounds_without_damping(
 
 @given(seed=st.integers(0, 1000))
 def test_energy_does_not_grow_without_damping(small_model: ModelMaker, follow: Follow, seed: int) -> None:
-    """Of a body that was kicked a little; what swings at several frequencies peaks at several times."""
+    """A slightly kicked body oscillates at several frequencies, with peaks at several times."""
     options = UNDAMPED | KICKED | {"temperature_amplitude": 0.1, "self_collision": False, "duration": 3.0}
     body, phase = some_body(seed)
     energy = follow(small_model(CANVAS, **options), body, phase, tracks=["energy"])["energy"].sum(axis=1)[2:]
@@ -169,10 +170,10 @@ def test_energy_does_not_grow_without_damping(small_model: ModelMaker, follow: F
 
 
 @given(seed=st.integers(0, 1000), bond=st.sampled_from([0.3, 1.0]), slow=st.sampled_from([0.0, 0.01]))
-def test_damping_makes_energy_less(
+def test_damping_reduces_energy(
     small_model: ModelMaker, follow: Follow, seed: int, bond: float, slow: float
 ) -> None:
-    """In every stretch of 30 steps, but for the first, in which the sizes jump."""
+    """In every interval of 30 steps except the first, in which the sizes jump."""
     options: dict[str, Any] = KICKED | {"temperature_amplitude": 0.1, "self_collision": False}
     body, phase = some_body(seed)
     model = small_model(CANVAS, bond_damping=bond, slow_damping=slow, **options)
@@ -182,13 +183,13 @@ def test_damping_makes_energy_less(
     assert peaks[-1] < 0.5 * peaks[0]
 
 
-# ---- what the tracks say
+# ---- tracks
 
 
-def test_momentum_is_mass_times_the_way_of_a_step(
+def test_momentum_is_mass_times_displacement_per_step(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """Of all voxels together; a body without bonds has no spin, and then angular momentum follows too."""
+    """Summed over voxels. A body without bonds has no spin, which also determines angular momentum."""
     palette = {1: material(density=2e6), 3: material(expansion=0.01)}
     options = {"gravity": -9.81, "floor": True, "palette": palette, "duration": 0.2}
     body, phase = some_body()
@@ -212,10 +213,10 @@ def test_momentum_is_mass_times_the_way_of_a_step(
             assert not tracks["strain"].any()
 
 
-def test_energy_and_strain_are_those_of_the_bonds(
+def test_energy_and_strain_follow_from_the_bonds(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow
 ) -> None:
-    """Of a chain of three: half of a1 x^2 each, and x over a lattice edge."""
+    """In a chain of three: a1 x^2 / 2 for each bond, and x relative to the lattice edge."""
     palette = {3: material(expansion=0.01)}
     model = small_model((1, 3, 1), palette=palette, duration=0.5)
     phases = np.array([0.1, -0.2, 0.3])
@@ -231,8 +232,10 @@ def test_energy_and_strain_are_those_of_the_bonds(
     assert tracks["energy"][0] == pytest.approx([0.0, 0.0], abs=1e-20)
 
 
-def test_weight_does_the_work_that_bending_and_turning_take(small_model: ModelMaker, follow: Follow) -> None:
-    """Of a bar that swings under its weight without damping, the energy of its turning voxels included."""
+def test_the_work_of_weight_equals_the_energy_of_bending_and_turning(
+    small_model: ModelMaker, follow: Follow
+) -> None:
+    """A bar swings under its weight without damping; the energy includes turning voxels."""
     options = {"gravity": -0.1, "time_step_fraction": 0.005, "duration": 0.3}
     tracks = follow(small_model((3, 1, 1), fixed=[FIX_ALL, 0, 0], **UNDAMPED, **options))
     work = 125.0 * 0.1 * (tracks["voxels"][0] - tracks["voxels"])[..., 2].sum(axis=(1, 2, 3))
@@ -242,7 +245,7 @@ def test_weight_does_the_work_that_bending_and_turning_take(small_model: ModelMa
 
 
 def test_a_slow_load_stores_the_work_that_it_does(small_model: ModelMaker, follow: Follow) -> None:
-    """Half of force times way, of a bar that bends under its weight: Clapeyron's theorem."""
+    """Half of force times displacement for a bar that bends under its weight: Clapeyron's theorem."""
     model = small_model((4, 1, 1), fixed=[FIX_ALL, 0, 0, 0], gravity=-0.01, duration=20.0, slow_damping=0.02)
     tracks = follow(model)
     sag = (tracks["voxels"][0] - tracks["voxels"][-1])[..., 2].sum()

@@ -1,4 +1,4 @@
-"""One bond along an axis, against its equations written out in one dimension (physics.md, 4 to 7)."""
+"""One bond along an axis, compared with its equations in one dimension (docs/physics.md, 4 to 7)."""
 
 import math
 from collections.abc import Callable
@@ -41,7 +41,7 @@ def size_at(time: float, phase: float, before: float, m: Material, s: Settings) 
 
 
 class Pair:
-    """Two voxels joined by one bond along x."""
+    """Two voxels connected by one bond along x."""
 
     def __init__(self, ends: tuple[Material, Material], phases: tuple[float, float], s: Settings) -> None:
         self.ends, self.phases, self.settings = ends, phases, s
@@ -92,7 +92,7 @@ def deviation(
     axis: int = 0,
     **changes: Any,
 ) -> float:
-    """Return by how much the solver and the written-out equations differ over 100 steps, m."""
+    """Return the difference between solver and equations over 100 steps, m."""
     canvas = tuple(np.roll((2, 1, 1), axis).tolist())
     model = small_model(canvas, palette={1: ends[0], 2: ends[1]}, **({"duration": 2.0} | changes))
     body = np.array([1, 2], np.uint8).reshape(1, *canvas)
@@ -148,10 +148,10 @@ def test_one_bond_follows_the_settings(
 
 
 @pytest.mark.parametrize("field", ["poisson_ratio", "youngs_modulus"])
-def test_a_bond_has_the_harmonic_mean_of_its_ends(
+def test_a_bond_has_the_harmonic_mean_stiffness_of_its_ends(
     small_model: ModelMaker, material: MaterialMaker, follow: Follow, field: str
 ) -> None:
-    """A checkerboard of two materials, in which every bond joins both, moves as one of their mean."""
+    """A checkerboard of two materials, in which every bond connects both, moves like their mean."""
     low, high = {"poisson_ratio": (0.1, 0.4), "youngs_modulus": (4e6, 9e6)}[field]
     body = 1 + np.indices((4, 3, 3)).sum(axis=0) % 2
     phase = np.random.default_rng(4).uniform(-1, 1, body.shape)
@@ -173,7 +173,7 @@ def test_a_bond_has_the_harmonic_mean_of_its_ends(
 @pytest.mark.parametrize(
     "changes",
     [
-        {"start_time": 0.1},  # no multiple of the period: the clock is absolute, and sizes jump
+        {"start_time": 0.1},  # not a multiple of the period: phases are absolute, so sizes jump
         {"start_time": 0.25},
         {"ramp": 0.2},
         {"ramp": 10.0},
@@ -189,7 +189,7 @@ def test_the_actuation_starts_and_grows(
 
 
 @pytest.mark.parametrize("amplitude", [1.5, 5.0])
-def test_sizes_beyond_the_limits_are_not_taken(
+def test_sizes_stay_within_the_limits(
     small_model: ModelMaker, material: MaterialMaker, amplitude: float
 ) -> None:
     ends = (material(expansion=amplitude / AMPLITUDE), material(expansion=-amplitude / AMPLITUDE))
@@ -218,7 +218,7 @@ def test_an_overstretched_bond_changes_its_frame(small_model: ModelMaker, materi
 def frequency(track: NDArray[np.float64], dt: float) -> float:
     """Return the angular frequency of samples x of a sine: x[n+1] + x[n-1] = 2 cos(w dt) x[n], rad/s."""
     x = track - (track.max() + track.min()) / 2
-    for _ in range(3):  # the mean of both extremes is not quite the centre
+    for _ in range(3):  # the mean of both extremes is only approximately the center
         c = float(x[1:-1] @ (x[2:] + x[:-2])) / float(2 * x[1:-1] @ x[1:-1])
         x = x - float(np.mean(x[2:] + x[:-2] - 2 * c * x[1:-1])) / (2 - 2 * c)
     return math.acos(c) / dt
@@ -230,7 +230,7 @@ def frequency(track: NDArray[np.float64], dt: float) -> float:
     ids=["free", "one end clamped", "unequal masses"],
 )
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_two_voxels_swing_with_their_own_period(
+def test_two_voxels_oscillate_with_their_natural_period(
     small_model: ModelMaker,
     material: MaterialMaker,
     follow: Follow,
@@ -239,7 +239,7 @@ def test_two_voxels_swing_with_their_own_period(
     reduced: float,
     axis: int,
 ) -> None:
-    """Semi-implicit Euler's own: cos(w dt) = 1 - (w0 dt)^2 / 2, w0^2 being stiffness over reduced mass."""
+    """For semi-implicit Euler, cos(w dt) = 1 - (w0 dt)^2 / 2, with w0^2 = stiffness / reduced mass."""
     ends = {i + 1: material(density=rho, expansion=1e-4) for i, rho in enumerate(densities)}
     canvas = tuple(np.roll((2, 1, 1), axis).tolist())
     options = {"period": 1e9, "bond_damping": 0.0, "slow_damping": 0.0, "duration": 4.0}
@@ -256,8 +256,8 @@ def test_two_voxels_swing_with_their_own_period(
     assert periods * dt == pytest.approx(2 * math.pi / own, rel=1e-2)
 
 
-def test_a_hanging_voxel_swings_about_its_equilibrium(small_model: ModelMaker, follow: Follow) -> None:
-    """Below a clamped one: it falls as far beyond m g / (E L) as that is below its start, and comes back."""
+def test_a_hanging_voxel_oscillates_about_its_equilibrium(small_model: ModelMaker, follow: Follow) -> None:
+    """Below a clamped voxel, it oscillates between its start and twice the sag m g / (E L)."""
     options = {"bond_damping": 0.0, "slow_damping": 0.0, "duration": 3.0, "gravity": -0.2}
     model = small_model((1, 1, 2), fixed=[0, FIX_ALL], **options)
     z = follow(model, tracks=["voxels"])["voxels"][:, 0, 0, 0, 2]
@@ -267,8 +267,8 @@ def test_a_hanging_voxel_swings_about_its_equilibrium(small_model: ModelMaker, f
     assert (z.max() + z.min()) / 2 == pytest.approx(L / 2 - sag, abs=2e-2 * sag)
 
 
-def test_a_damped_chain_hangs_as_far_as_its_weight_pulls_it(small_model: ModelMaker, follow: Follow) -> None:
-    """Each bond carries all that hangs below it: m g / (E L) times that many."""
+def test_the_sag_of_a_damped_chain_follows_from_its_weight(small_model: ModelMaker, follow: Follow) -> None:
+    """Each bond carries the n voxels below it: n m g / (E L)."""
     n = 6
     held = [0] * (n - 1) + [FIX_ALL]
     model = small_model((1, 1, n), fixed=held, gravity=-0.2, slow_damping=0.03, duration=20.0)

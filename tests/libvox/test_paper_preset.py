@@ -1,4 +1,4 @@
-"""The paper's setting, against traces of the engine that its authors used."""
+"""The paper's setting, compared with traces of the authors' engine."""
 
 from collections.abc import Callable
 
@@ -26,14 +26,14 @@ def largest(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     return float(np.nanmax(np.abs(a - b)))
 
 
-def test_time_step_and_steps_are_the_engines(paper: Arrays, paper_model: ModelMaker) -> None:
+def test_time_step_and_steps_agree_with_the_engine(paper: Arrays, paper_model: ModelMaker) -> None:
     dt, steps = paper_model().time_steps(paper["material"])
     assert np.allclose(dt, paper["time"][1], rtol=1e-14, atol=0.0)
     assert (steps == 22).all()
 
 
 @pytest.mark.parametrize("whole_body", [False, True])
-def test_what_is_left_out_changes_no_bit(
+def test_skipping_the_last_step_changes_no_bit(
     paper: Arrays, paper_model: ModelMaker, result: Result, kernel: str, whole_body: bool
 ) -> None:
     model = paper_model(kernel=kernel, whole_body=whole_body)
@@ -46,7 +46,9 @@ def test_nothing_diverges(result: Result) -> None:
     assert not result.diverged_step.any()
 
 
-def test_displacements_are_the_engines(paper: Arrays, result: Result, say: Callable[[str], None]) -> None:
+def test_displacements_agree_with_the_engine(
+    paper: Arrays, result: Result, say: Callable[[str], None]
+) -> None:
     z = result.tracks["tip"][..., 2]
     off = largest(z[:, 21] - z[:, 1], paper["displacement"])
     say(f"36 displacements: largest deviation {off:.2e} m (limit 1e-9)")
@@ -54,7 +56,7 @@ def test_displacements_are_the_engines(paper: Arrays, result: Result, say: Calla
 
 
 @pytest.mark.parametrize(("track", "golden"), [("tip", "tip"), ("face", "free_face_mean")])
-def test_traces_are_the_engines(
+def test_traces_agree_with_the_engine(
     paper: Arrays, result: Result, track: Track, golden: str, say: Callable[[str], None]
 ) -> None:
     off = largest(result.tracks[track], paper[golden])
@@ -62,7 +64,9 @@ def test_traces_are_the_engines(
     assert off < 1e-9
 
 
-def test_final_positions_are_the_engines(paper: Arrays, result: Result, say: Callable[[str], None]) -> None:
+def test_final_positions_agree_with_the_engine(
+    paper: Arrays, result: Result, say: Callable[[str], None]
+) -> None:
     final = result.tracks["voxels"][:, -1]
     off = largest(final, paper["final_position"])
     say(f"every voxel after the last step: largest deviation {off:.2e} m (limit 1e-8)")
@@ -78,7 +82,7 @@ def test_the_published_bodies_move_without_actuation(paper: Arrays, paper_model:
     assert tip[:, 1] - tip[:, 0] == pytest.approx([0.0011106, 0.0019527, 0.0020189], abs=5e-8)
 
 
-def test_what_moves_them_is_self_collision(paper: Arrays, paper_model: ModelMaker) -> None:
+def test_self_collision_causes_this_motion(paper: Arrays, paper_model: ModelMaker) -> None:
     published = [0, 3, 6]
     model = paper_model(expansion=0.0, self_collision=False)
     voxels = model.simulate(paper["material"][published], paper["phase_cycles"][published], [1, 21], ["tip"])

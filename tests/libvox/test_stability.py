@@ -1,4 +1,4 @@
-"""When a body counts as diverged, at which step, and that the others in its batch do not notice."""
+"""Conditions and steps of divergence, and independence of the other bodies in a batch."""
 
 from collections.abc import Callable
 from typing import Any
@@ -17,13 +17,13 @@ COLUMN = np.ones((1, 1, 1, 2), np.uint8)
 
 
 def simulate(model: Model, bodies: NDArray[np.uint8]) -> Result:
-    """Simulate bodies of as many steps, and sample each."""
+    """Simulate bodies with equal numbers of steps, and sample every step."""
     steps = int(model.time_steps(bodies)[1].min())
     return model.simulate(bodies, np.zeros(bodies.shape), range(steps + 1))
 
 
 def assert_nothing_after(result: Result, bodies: NDArray[np.uint8], body: int) -> None:
-    """Until it diverged a body's samples are numbers, and from then on they are none."""
+    """Check that the samples of a body are finite until it diverges, and NaN from then on."""
     at = int(result.diverged_step[body])
     assert at > 0
     for name, track in result.tracks.items():
@@ -40,7 +40,7 @@ def assert_nothing_after(result: Result, bodies: NDArray[np.uint8], body: int) -
 def test_a_bond_beyond_the_largest_strain_has_diverged(
     small_model: ModelMaker, gravity: float, largest: float
 ) -> None:
-    """Stretched or compressed: in the step that finds the bond so."""
+    """Stretched or compressed; the step is the one that finds the bond in this state."""
     options = {"fixed": [0, FIX_ALL], "gravity": gravity, "duration": 0.3, "bond_damping": 0.0}
     free = simulate(small_model((1, 1, 2), **options), COLUMN)
     assert free.diverged_step.tolist() == [0]
@@ -68,7 +68,7 @@ def test_a_strain_that_is_never_reached_changes_nothing(small_model: ModelMaker)
 def test_a_voxel_beyond_the_largest_distance_has_diverged(
     small_model: ModelMaker, follow: Follow, largest: float, canvas: tuple[int, int, int]
 ) -> None:
-    """From where it started, in longest edges of the canvas."""
+    """Measured from its start, in longest edges of the canvas."""
     options = {"gravity": -9.81, "slow_damping": 0.0, "duration": 1.0}
     body = np.zeros((1, *canvas), np.uint8)
     body[0, 0, 0, 0] = 1
@@ -78,12 +78,12 @@ def test_a_voxel_beyond_the_largest_distance_has_diverged(
     assert_nothing_after(result, body, 0)
 
 
-def test_a_clamped_voxel_goes_nowhere(small_model: ModelMaker) -> None:
+def test_a_clamped_voxel_never_exceeds_the_distance(small_model: ModelMaker) -> None:
     model = small_model((1, 1, 2), fixed=[FIX_ALL, FIX_ALL], gravity=-1e9, largest_distance=1e-9)
     assert simulate(model, COLUMN).diverged_step.tolist() == [0]
 
 
-# ---- what is no number
+# ---- numbers that are not finite
 
 
 @pytest.mark.parametrize(
@@ -98,23 +98,25 @@ def test_a_clamped_voxel_goes_nowhere(small_model: ModelMaker) -> None:
     ],
 )
 @pytest.mark.parametrize("bounds", [{}, {"largest_strain": 1e9, "largest_distance": 1e9}])
-def test_absurd_forces_end_as_diverged(
+def test_absurd_forces_lead_to_divergence(
     small_model: ModelMaker, changes: dict[str, Any], bounds: dict[str, float]
 ) -> None:
-    """Whatever the bounds: no sample is infinite or no number before the step that is named."""
+    """With any bounds, all samples before the reported step are finite."""
     bodies = np.full((1, 1, 1, 2), 3, np.uint8)
     result = simulate(small_model((1, 1, 2), duration=3.0, **changes, **bounds), bodies)
-    if "temperature_amplitude" in changes:  # sizes beyond the limits are not taken
+    if "temperature_amplitude" in changes:  # sizes stay within the limits
         assert result.diverged_step.tolist() == [0]
     else:
         assert_nothing_after(result, bodies, 0)
 
 
-# ---- others
+# ---- other bodies
 
 
-def test_the_others_in_a_batch_do_not_notice(small_model: ModelMaker, material: MaterialMaker) -> None:
-    """A heavy body tears its bond; the light ones before and after it are what they are alone."""
+def test_the_other_bodies_in_a_batch_are_not_affected(
+    small_model: ModelMaker, material: MaterialMaker
+) -> None:
+    """The bond of a heavy body breaks; the light bodies before and after it move like bodies alone."""
     palette = {1: material(), 2: material(density=1e8), 3: material(youngs_modulus=5e8, density=1e8)}
     options = {"fixed": [FIX_ALL, 0, 0], "gravity": -9.81, "largest_strain": 0.5, "duration": 0.5}
     model = small_model((3, 1, 1), palette=palette, **options)
@@ -131,7 +133,7 @@ def test_the_others_in_a_batch_do_not_notice(small_model: ModelMaker, material: 
             assert np.array_equal(track[0], result.tracks[name][body], equal_nan=True)
 
 
-def test_a_body_that_diverges_after_its_last_sample_says_so(small_model: ModelMaker) -> None:
+def test_divergence_after_the_last_sample_is_reported(small_model: ModelMaker) -> None:
     options = {"gravity": -9.81, "slow_damping": 0.0, "duration": 1.0, "largest_distance": 1.0}
     result = small_model((1, 1, 2), **options).simulate(COLUMN, np.zeros(COLUMN.shape), [0, 5])
     assert result.diverged_step[0] > 5

@@ -1,4 +1,4 @@
-"""What the library shows to the linker, and to the loader of the extension."""
+"""Symbols that the library exports to the linker and to the loader of the extension."""
 
 from symbols import SymbolTests
 

@@ -1,4 +1,4 @@
-"""Small bodies for the tests of ``vox``, and their materials."""
+"""Small bodies and materials for the tests of ``vox``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from evoframe_simulators import PaletteMaterial
 
 
 def soft(code: int, **changed: Any) -> PaletteMaterial:
-    """Return the paper's passive material under a code, with changes."""
+    """Return the paper's passive material with a code and changes."""
     options: dict[str, Any] = {
         "youngs_modulus": 5e6,
         "poisson_ratio": 0.35,
@@ -22,6 +22,6 @@ def soft(code: int, **changed: Any) -> PaletteMaterial:
 
 
 def bar(*codes: int) -> Design:
-    """Return a row of voxels along x, with all phase offsets 0."""
+    """Return a row of voxels along x with all offsets 0."""
     cells = np.array(codes, np.uint8).reshape(-1, 1, 1)
     return Design({"morphology": cells, "controller": np.zeros(cells.shape)})

@@ -22,7 +22,7 @@ ZERO = np.zeros(CELLS)
 
 def npy(array: Any, version: tuple[int, int] | None = None) -> bytes:
     file = io.BytesIO()
-    with warnings.catch_warnings(action="ignore"):  # numpy would rather write version 1
+    with warnings.catch_warnings(action="ignore"):  # numpy warns of versions other than 1
         np.lib.format.write_array(file, np.asarray(array), version)
     return file.getvalue()
 
@@ -42,20 +42,20 @@ def zipped(
 ) -> bytes:
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", method) as archive, warnings.catch_warnings(action="ignore"):
-        for name, content in members:  # of a name that is there already, zipfile warns
+        for name, content in members:  # zipfile warns of duplicate names
             archive.writestr(name, content)
     return change(file.getvalue())
 
 
 def bodies(material: Any = SOLID, phase_cycles: Any = ZERO, **options: Any) -> bytes:
-    """Return an .npz file; a member is given as an array, or as its bytes."""
+    """Return an .npz file with members given as arrays or bytes."""
     members = {"material.npy": material, "phase_cycles.npy": phase_cycles}
     packed = ((name, given if isinstance(given, bytes) else npy(given)) for name, given in members.items())
     return zipped(*packed, **options)
 
 
 def encrypted(content: bytes) -> bytes:
-    """Set the flag at every entry, in both of its places."""
+    """Set the encryption flag in both headers of every entry."""
     changed = bytearray(content)
     for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         at = content.find(signature)
@@ -66,7 +66,7 @@ def encrypted(content: bytes) -> bytes:
 
 
 def garbled(content: bytes) -> bytes:
-    """Overwrite the packed bytes of the first entry."""
+    """Overwrite the compressed bytes of the first entry."""
     start = 30 + len("material.npy")
     return content[:start] + b"\xff" * 20 + content[start + 20 :]
 
@@ -76,82 +76,90 @@ def renamed(before: bytes, after: bytes) -> Callable[[bytes], bytes]:
 
 
 DAMAGED = [
-    pytest.param(b"", "is no .npz file with material and phase_cycles: ", id="nothing"),
-    pytest.param(b"\x89PNG\r\n" + bytes(100), "is no .npz file", id="a picture"),
-    pytest.param(npy(SOLID), "is no .npz file", id="an array alone"),
-    pytest.param(GOLDEN.read_bytes()[:5000], "is no .npz file", id="truncated"),
+    pytest.param(b"", "", r"\.npz file", id="nothing"),
+    pytest.param(b"\x89PNG\r\n" + bytes(100), "", r"\.npz file", id="a picture"),
+    pytest.param(npy(SOLID), "", r"\.npz file", id="an array alone"),
+    pytest.param(GOLDEN.read_bytes()[:5000], "", r"\.npz file", id="truncated"),
     pytest.param(
         zipped(("bodies.npy", npy(SOLID))),
-        "has no array 'material'; expected material and phase_cycles, found bodies",
+        "material",
+        "missing array.* material and phase_cycles, .* bodies$",
         id="other arrays",
     ),
-    pytest.param(zipped(), "has no array 'material'; expected .*, found nothing$", id="no arrays"),
-    pytest.param(zipped(("material.npy", npy(SOLID))), "has no array 'phase_cycles'", id="no phase"),
+    pytest.param(zipped(), "material", "missing array.* nothing$", id="no arrays"),
+    pytest.param(
+        zipped(("material.npy", npy(SOLID))), "phase_cycles", "missing array.* material$", id="no phase"
+    ),
     pytest.param(
         zipped(("a/material.npy", npy(SOLID)), ("a/phase_cycles.npy", npy(ZERO))),
-        "has no array 'material'; expected .*, found a/material, a/phase_cycles",
+        "material",
+        "missing array.* a/material, a/phase_cycles$",
         id="in a directory",
     ),
     pytest.param(
         zipped(*[("material.npy", npy(SOLID))] * 2, ("phase_cycles.npy", npy(ZERO))),
-        "has 2 arrays 'material'; expected one",
+        "material",
+        "^2 arrays",
         id="one name twice",
     ),
     pytest.param(
         zipped(("material.npy", npy(SOLID)), ("material", npy(SOLID)), ("phase_cycles", npy(ZERO))),
-        "has 2 arrays 'material'; expected one",
+        "material",
+        "^2 arrays",
         id="one name with and without suffix",
     ),
     pytest.param(
         bodies(change=encrypted),
-        "material is encrypted; expected what numpy.savez writes",
+        "material",
+        "encrypted",
         id="encrypted",
     ),
-    pytest.param(
-        bodies(method=zipfile.ZIP_LZMA), "material is compressed with method 14; expected", id="lzma"
-    ),
+    pytest.param(bodies(method=zipfile.ZIP_LZMA), "material", "method 14", id="lzma"),
     pytest.param(
         bodies(method=zipfile.ZIP_BZIP2, change=renamed(bz2.compress(npy(SOLID))[:9], bytes(9))),
-        "material is compressed with method 12; expected",
+        "material",
+        "method 12",
         id="corrupt bzip2",
     ),
     pytest.param(
         bodies(method=zipfile.ZIP_DEFLATED, change=garbled),
-        "material is no array: Error -3",
+        "material",
+        "array: Error -3",
         id="deflate",
     ),
-    pytest.param(bodies(change=garbled), "material is no array: Bad CRC-32", id="checksum"),
+    pytest.param(bodies(change=garbled), "material", "array: Bad CRC-32", id="checksum"),
     pytest.param(
         bodies(change=renamed(bytes(100), bytes(99) + b"\1")),
-        "phase_cycles is no array: Bad CRC-32",
+        "phase_cycles",
+        "array: Bad CRC-32",
         id="a bit of the phase",
     ),
-    pytest.param(bodies(material=b"1, 1, 3"), "material is no array: EOF", id="a text"),
-    pytest.param(bodies(material=b"x" * 500), "material is no array: the magic string", id="a long text"),
-    pytest.param(bodies(material=b""), "material is no array: EOF", id="an empty member"),
-    pytest.param(bodies(material=claiming()[:-8]), "material cannot be unpacked: EOF", id="half the data"),
-    pytest.param(bodies(material=header("{")), "material is no array: ", id="half a header"),
-    pytest.param(bodies(material=header("3")), "is no array: Header is not a dict", id="no dictionary"),
+    pytest.param(bodies(material=b"1, 1, 3"), "material", "array: EOF", id="a text"),
+    pytest.param(bodies(material=b"x" * 500), "material", "array: .*magic string", id="a long text"),
+    pytest.param(bodies(material=b""), "material", "array: EOF", id="an empty member"),
+    pytest.param(bodies(material=claiming()[:-8]), "material", "unpacked: EOF", id="half the data"),
+    pytest.param(bodies(material=header("{")), "material", "array: ", id="half a header"),
+    pytest.param(bodies(material=header("3")), "material", "array: Header", id="no dictionary"),
+    pytest.param(bodies(material=header("(" * 5000)), "material", "array: .{3,200}$", id="nested brackets"),
     pytest.param(
-        bodies(material=header("(" * 5000)), "material is no array: .{3,200}$", id="nested brackets"
+        bodies(material=header("-" * 9000 + "1")), "material", "array: .{3,200}$", id="nested signs"
     ),
+    pytest.param(bodies(material=header(" " * 20000)), "material", "array: EOF", id="a long header"),
     pytest.param(
-        bodies(material=header("-" * 9000 + "1")), "material is no array: .{3,200}$", id="nested signs"
-    ),
-    pytest.param(bodies(material=header(" " * 20000)), "is no array: EOF", id="a long header"),
-    pytest.param(
-        bodies(material=b"\x93NUMPY\2\0\xff\xff\xff\xff"), "is no array: EOF", id="a header of 4 GB"
+        bodies(material=b"\x93NUMPY\2\0\xff\xff\xff\xff"), "material", "array: EOF", id="a header of 4 GB"
     ),
     pytest.param(
         bodies(material=header(claiming()[10:-16].decode(), 9)),
-        "material cannot be unpacked: we only support format version",
+        "material",
+        "unpacked: .*format version",
         id="a version to come",
     ),
-    pytest.param(bodies(material=claiming(descr="()")), "material is no array: ", id="no type"),
+    pytest.param(bodies(material=claiming(descr="()")), "material", "array: ", id="no type"),
     pytest.param(
         bodies(phase_cycles=claiming(descr="'<f8'")),
-        "phase_cycles cannot be unpacked: EOF",
+        "phase_cycles",
+        "unpacked: EOF",
         id="no phases",
     ),
 ]
-"""Files that do not have the two arrays whole, with what is wrong with each."""
+"""Files without two intact arrays, with the key of the error and a pattern in its problem."""

@@ -1,7 +1,6 @@
-"""The built-in simulators: so far ``vox``, voxel actuators on libvox.
+"""Built-in simulators: currently ``vox``, voxel actuators on libvox.
 
-Each simulator has a room of its own, beside which stands what all of them need: :mod:`.files` and :mod:`.npz`
-read files from anyone.
+Each simulator has its own package. :mod:`.files` and :mod:`.npz`, which read untrusted files, are shared.
 """
 
 from collections.abc import Mapping

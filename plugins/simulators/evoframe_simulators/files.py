@@ -1,4 +1,4 @@
-"""Files from anyone: every complaint names its file."""
+"""Errors in files given by the user, with the name of the file."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from pathlib import Path
 
 from evoframe import InputError
 
-__all__ = ["naming"]
+__all__ = ["naming_source"]
 
 
 @contextmanager
-def naming(path: Path) -> Iterator[None]:
-    """Put the name of a file in front of what is wrong with it.
+def naming_source(path: Path) -> Iterator[None]:
+    """Name *path* as the source of input errors raised in the block.
 
     Raises:
-        InputError: The block raised one, or the file could not be read; begins with the name.
+        InputError: The block raised one, or the file could not be read; its ``source`` is *path*.
     """
     try:
         yield
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+        raise InputError(f"cannot be read: {error.strerror or error}", source=path) from error
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(error.problem, source=path, key=error.key) from error

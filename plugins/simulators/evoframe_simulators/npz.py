@@ -1,4 +1,4 @@
-"""Arrays in ``.npz`` files from anyone: looked at before they are unpacked."""
+"""Arrays in untrusted ``.npz`` files, inspected before they are unpacked."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from evoframe import InputError
 
 __all__ = ["PackedArray", "open_npz"]
 
-_MOST_HEADER_BYTES = 2**14  # numpy itself trusts no header of more than 10000 characters
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a limit to memory
+_MOST_HEADER_BYTES = 2**14  # numpy itself rejects headers longer than 10000 characters
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a memory limit
 _ENCRYPTED = 0x1
 
-# What zipfile, zlib and numpy raise for files that are damaged; a header is parsed as Python, hence the rest.
+# Exceptions of zipfile, zlib and numpy for damaged files; numpy parses headers as Python, hence the others.
 _DAMAGE = (
     zipfile.BadZipFile,
     zlib.error,
@@ -45,12 +45,12 @@ _DAMAGE = (
 
 @attrs.frozen
 class PackedArray:
-    """An array that is not unpacked yet.
+    """An array in an archive that has not been unpacked yet.
 
     Attributes:
-        name: Its name in the file.
-        shape: What its header claims.
-        dtype: What its header claims.
+        name: Name in the file.
+        shape: Shape according to the array's header.
+        dtype: Type according to the array's header.
     """
 
     name: str
@@ -60,25 +60,25 @@ class PackedArray:
     _entry: zipfile.ZipInfo = attrs.field(repr=False)
 
     def unpack(self) -> NDArray[Any]:
-        """Return the array, which takes as much memory as shape and dtype say.
+        """Return the array, which requires the memory implied by shape and dtype.
 
         Raises:
-            InputError: It is damaged.
+            InputError: The array is damaged.
         """
-        with _refusing_damage(f"{self.name} cannot be unpacked"), self._archive.open(self._entry) as file:
-            array: NDArray[Any] = npy.read_array(file)  # which refuses objects
+        with _rejecting_damage("cannot be unpacked", self.name), self._archive.open(self._entry) as file:
+            array: NDArray[Any] = npy.read_array(file)  # rejects objects
             return array
 
 
 @contextmanager
 def open_npz(path: Path, names: Sequence[str]) -> Iterator[list[PackedArray]]:
-    """Open the arrays *names* of a file; they can be unpacked until it is closed.
+    """Open the arrays *names* of a file; they can be unpacked inside the ``with`` block.
 
     Raises:
         OSError: The file cannot be read.
-        InputError: It is something else, or one of the arrays is missing or unusable; says which.
+        InputError: The file is not an ``.npz`` file, or the array named by ``key`` is missing or unusable.
     """
-    with _refusing_damage(f"is no .npz file with {' and '.join(names)}"):
+    with _rejecting_damage(f"expected an .npz file with {' and '.join(names)}, found something else"):
         archive = zipfile.ZipFile(path)
     with archive:
         yield [_packed_array(archive, name, names) for name in names]
@@ -86,10 +86,10 @@ def open_npz(path: Path, names: Sequence[str]) -> Iterator[list[PackedArray]]:
 
 def _packed_array(archive: zipfile.ZipFile, name: str, names: Sequence[str]) -> PackedArray:
     entry = _entry(archive, name, names)
-    with _refusing_damage(f"{name} is no array"):
+    with _rejecting_damage("is not an array", name):
         with archive.open(entry) as file:
             head = io.BytesIO(file.read(_MOST_HEADER_BYTES))
-        # Version 3 differs from 2 in what is not ASCII; later ones are refused when unpacked.
+        # Version 3 differs from 2 only in non-ASCII names; later versions are rejected during unpacking.
         read = npy.read_array_header_1_0 if npy.read_magic(head) == (1, 0) else npy.read_array_header_2_0
         shape, _, dtype = read(head)
     return PackedArray(name, shape, dtype, archive, entry)
@@ -99,16 +99,17 @@ def _entry(archive: zipfile.ZipFile, name: str, names: Sequence[str]) -> zipfile
     entries = [entry for entry in archive.infolist() if _name(entry) == name]
     if not entries:
         found = ", ".join(sorted(map(_name, archive.infolist()))) or "nothing"
-        raise InputError(f"has no array '{name}'; expected {' and '.join(names)}, found {found}")
+        raise InputError(f"missing array; expected {' and '.join(names)}, found {found}", key=name)
     if len(entries) > 1:
-        raise InputError(f"has {len(entries)} arrays '{name}'; expected one")
+        raise InputError(f"{len(entries)} arrays have this name; expected one", key=name)
     [entry] = entries
     if entry.flag_bits & _ENCRYPTED:
-        raise InputError(f"{name} is encrypted; expected what numpy.savez writes")
+        raise InputError("encrypted; expected an array saved with numpy.savez", key=name)
     if entry.compress_type not in _METHODS:
         raise InputError(
-            f"{name} is compressed with method {entry.compress_type}; expected what numpy.savez or "
-            f"numpy.savez_compressed writes (methods {zipfile.ZIP_STORED} and {zipfile.ZIP_DEFLATED})"
+            f"compression method {entry.compress_type}; expected {zipfile.ZIP_STORED} or "
+            f"{zipfile.ZIP_DEFLATED}; save it with numpy.savez or numpy.savez_compressed",
+            key=name,
         )
     return entry
 
@@ -118,10 +119,10 @@ def _name(entry: zipfile.ZipInfo) -> str:
 
 
 @contextmanager
-def _refusing_damage(what: str) -> Iterator[None]:
+def _rejecting_damage(problem: str, key: str = "") -> Iterator[None]:
     try:
-        with warnings.catch_warnings(action="ignore"):  # of Python about headers that are odd literals
+        with warnings.catch_warnings(action="ignore"):  # Python warns of unusual literals in headers
             yield
     except _DAMAGE as error:
         detail = " ".join(str(error).split())[:200]  # numpy may quote a whole header
-        raise InputError(f"{what}: {detail or type(error).__name__}") from error
+        raise InputError(f"{problem}: {detail or type(error).__name__}", key=key) from error

@@ -1,4 +1,4 @@
-"""What the tests of simulators share."""
+"""Fixtures shared by the tests of simulators."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EXAMPLES = Path(__file__).parents[2] / "data" / "vxa"
 
 @pytest.fixture
 def simulated(capsys: pytest.CaptureFixture[str]) -> Callable[[Path], tuple[int, str]]:
-    """``evoframe simulate FILE`` in this process: its exit code, and what it complains of."""
+    """Run ``evoframe simulate FILE`` in this process; return its exit code and stderr."""
 
     def simulate(path: Path) -> tuple[int, str]:
         with pytest.raises(SystemExit) as left:
@@ -29,8 +29,8 @@ def simulated(capsys: pytest.CaptureFixture[str]) -> Callable[[Path], tuple[int,
 def vxa(tmp_path: Path) -> Callable[..., Path]:
     """Write one of the example files with changes, and return its path.
 
-    ``vxa(tag=value)`` gives the first element of a name another text; ``vxa(after={line: more})`` puts lines
-    after the first one like it, and ``vxa(without=[tag])`` takes out an element with all that it holds.
+    ``vxa(tag=value)`` replaces the text of the first element of this name; ``vxa(after={line: more})``
+    inserts text after the first occurrence of a line, and ``vxa(without=[tag])`` removes an element.
     """
 
     def write(

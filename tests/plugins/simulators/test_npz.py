@@ -1,7 +1,8 @@
-"""Arrays in ``.npz`` files from anyone: looked at before they are unpacked."""
+"""Arrays in untrusted ``.npz`` files, inspected before they are unpacked."""
 
 from __future__ import annotations
 
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -29,13 +30,15 @@ def unpacked(path: Path) -> list[NDArray[Any]]:
         return [array.unpack() for array in found]
 
 
-@pytest.mark.parametrize(("content", "message"), DAMAGED)
-def test_what_is_damaged_is_refused_before_or_when_it_is_unpacked(
-    path: Path, content: bytes, message: str
+@pytest.mark.parametrize(("content", "key", "problem"), DAMAGED)
+def test_a_damaged_file_is_rejected_before_or_during_unpacking(
+    path: Path, content: bytes, key: str, problem: str
 ) -> None:
     path.write_bytes(content)
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError) as caught:
         unpacked(path)
+    assert caught.value.key == key
+    assert re.search(problem, caught.value.problem)
 
 
 dtypes = arrays.integer_dtypes() | arrays.unsigned_integer_dtypes() | arrays.floating_dtypes()
@@ -45,7 +48,7 @@ dtypes = arrays.integer_dtypes() | arrays.unsigned_integer_dtypes() | arrays.flo
     array=arrays.arrays(dtypes, arrays.array_shapes(min_dims=0, max_dims=4, min_side=0), fill=st.nothing()),
     compressed=st.booleans(),
 )
-def test_what_numpy_saves_is_unpacked(
+def test_an_array_saved_by_numpy_is_unpacked(
     array: NDArray[Any], compressed: bool, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "saved.npz"
@@ -56,7 +59,7 @@ def test_what_numpy_saves_is_unpacked(
         np.testing.assert_array_equal(packed.unpack(), array)
 
 
-def test_arrays_come_in_the_order_in_which_they_are_asked_for() -> None:
+def test_arrays_have_the_order_of_the_names() -> None:
     for names in (NAMES, NAMES[::-1]):
         with open_npz(GOLDEN, names) as found:
             assert tuple(array.name for array in found) == names
@@ -73,19 +76,21 @@ def test_objects_are_never_unpacked(path: Path) -> None:
     path.write_bytes(bodies(material=np.array([{}], object)))
     with open_npz(path, NAMES) as [material, _]:
         assert material.dtype == object
-        with pytest.raises(InputError, match=r"^material cannot be unpacked: Object arrays cannot be loaded"):
+        with pytest.raises(InputError, match="Object arrays") as caught:
             material.unpack()
+        assert caught.value.key == "material"
 
 
-def test_what_was_found_instead_is_named(path: Path) -> None:
+def test_the_error_for_a_missing_array_names_expected_and_found_ones(path: Path) -> None:
     path.write_bytes(zipped(("b.npy", b""), ("a", b""), method=zipfile.ZIP_DEFLATED))
     with (
-        pytest.raises(InputError, match=r"^has no array 'x'; expected x and y, found a, b$"),
+        pytest.raises(InputError, match=r"x and y, .* a, b$") as caught,
         open_npz(path, "xy"),
     ):
         pass
+    assert caught.value.key == "x"
 
 
-def test_a_file_that_cannot_be_read_is_left_to_the_caller(path: Path) -> None:
+def test_an_unreadable_file_raises_an_os_error(path: Path) -> None:
     with pytest.raises(FileNotFoundError), open_npz(path, NAMES):
         pass

@@ -1,4 +1,4 @@
-"""The simulators that are offered, and their optional capabilities."""
+"""Simulators offered by the plugin, and their optional capabilities."""
 
 from __future__ import annotations
 

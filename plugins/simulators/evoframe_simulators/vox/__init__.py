@@ -1,9 +1,9 @@
-"""The simulator ``vox``: the Python face of the voxel solver libvox.
+"""The simulator ``vox``, which runs the voxel solver libvox.
 
-From the bottom up: :mod:`.limits`, :mod:`.materials` and :mod:`.regions` say what an option may be,
-:mod:`.settings` has all options as one value, :mod:`.models` gives the solver's view of them,
-:mod:`.simulation` simulates batches, :mod:`.geometry`, :mod:`.verification` and :mod:`.vxa` stand on that,
-and :mod:`.simulator` has the component that is offered to the core.
+From the bottom up: :mod:`.limits`, :mod:`.materials` and :mod:`.regions` define the values of options,
+:mod:`.settings` collects all options, :mod:`.models` translates them for the solver, :mod:`.simulation`
+simulates batches, :mod:`.geometry`, :mod:`.verification` and :mod:`.vxa` build on these, and
+:mod:`.simulator` contains the component that the plugin offers to the core.
 """
 
 from evoframe_simulators.vox.materials import PaletteMaterial

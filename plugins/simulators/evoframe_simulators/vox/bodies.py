@@ -1,4 +1,4 @@
-"""Bodies as arrays: what they may be, and how they are read from ``.npz`` files."""
+"""Validation of bodies as arrays, and reading of bodies from ``.npz`` files."""
 
 from __future__ import annotations
 
@@ -11,25 +11,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import CONTROLLER, EMPTY, MORPHOLOGY, Design, InputError
-from evoframe_simulators.files import naming
+from evoframe_simulators.files import naming_source
 from evoframe_simulators.npz import PackedArray, open_npz
 from evoframe_simulators.vox.limits import MOST_CELLS, MOST_CYCLES
-from evoframe_simulators.vox.materials import PaletteMaterial, described
+from evoframe_simulators.vox.materials import PaletteMaterial, describe_codes
 
 __all__ = ["check_codes", "check_cycles", "check_design", "read_bodies"]
 
 
 def check_design(design: Design) -> None:
-    """Refuse a design that is no body with a controller; what its cells hold is checked by the solver.
+    """Reject a design that is not a body with a controller; the solver checks the values in the cells.
 
     Raises:
-        InputError: Says what is wrong with its arrays.
+        InputError: The array of the role ``key`` has another type or shape than expected.
     """
     material, phase = design.roles[MORPHOLOGY], design.roles[CONTROLLER]
     if material.ndim != 3 or material.dtype != np.uint8:
-        raise InputError(f"morphology is {_described(material)}; expected uint8[X, Y, Z]")
+        raise InputError(f"found {_described(material)}, expected uint8[X, Y, Z]", key=MORPHOLOGY)
     if phase.shape != material.shape or phase.dtype != np.float64:
-        raise InputError(f"controller is {_described(phase)}; expected float64{list(material.shape)}")
+        expected = f"float64{list(material.shape)}"
+        raise InputError(f"found {_described(phase)}, expected {expected}", key=CONTROLLER)
 
 
 def _described(array: NDArray[Any]) -> str:
@@ -37,27 +38,27 @@ def _described(array: NDArray[Any]) -> str:
 
 
 def check_codes(material: NDArray[Any], materials: Mapping[int, PaletteMaterial]) -> None:
-    """Refuse bodies with a cell that is neither empty nor of one of the materials.
+    """Reject bodies with a cell that is neither empty nor made of one of *materials*.
 
     Raises:
-        InputError: Says which code was found, and what there is.
+        InputError: A cell has an unknown code; names the code and the known ones.
     """
     wrong = material[~np.isin(material, (EMPTY, *materials))]
     if wrong.size:
-        raise InputError(f"material has the code {wrong[0]}; codes: {described(materials)}")
+        raise InputError(f"unknown code {wrong[0]}; codes: {describe_codes(materials)}", key="material")
 
 
 def check_cycles(cycles: NDArray[np.float64], name: str) -> None:
-    """Refuse phase offsets that are not finite, or too large to have a fraction.
+    """Reject phase offsets that are not finite, or too large for single precision to hold a fraction.
 
     Raises:
-        InputError: Says what was found under this name.
+        InputError: An offset is out of range; *name* is the key.
     """
     if not np.isfinite(cycles).all():
-        raise InputError(f"{name} has a value that is not finite")
+        raise InputError("found a value that is not finite", key=name)
     largest = float(np.abs(cycles).max(initial=0.0))
     if largest > MOST_CYCLES:
-        raise InputError(f"{name} has the value {largest:g}; at most {MOST_CYCLES:g} cycles")
+        raise InputError(f"found {largest:g} cycles, expected at most {MOST_CYCLES:g}", key=name)
 
 
 def read_bodies(
@@ -67,20 +68,20 @@ def read_bodies(
 
     Args:
         path: An ``.npz`` file.
-        materials: What a cell may be made of.
+        materials: Code -> material of a cell.
 
     Raises:
-        InputError: The file cannot be read, or its arrays are not bodies; says what is wrong.
+        InputError: The file cannot be read, or the array named by ``key`` does not contain bodies.
     """
-    with naming(path), open_npz(path, ("material", "phase_cycles")) as (material, phase):
+    with naming_source(path), open_npz(path, ("material", "phase_cycles")) as (material, phase):
         _check_headers(material, phase)
         codes = material.unpack()
         check_codes(codes, materials)
         without = np.flatnonzero(~codes.any(axis=(-3, -2, -1)))
         if without.size:
-            raise InputError(f"material: body {without[0]} has no voxel")
+            raise InputError(f"body {without[0]} has no voxels", key="material")
         codes = codes.astype(np.uint8)
-        with np.errstate(all="ignore"):  # what double precision cannot hold becomes infinite
+        with np.errstate(all="ignore"):  # values beyond double precision become infinite
             cycles: NDArray[np.float64] = phase.unpack().astype(np.float64)
         check_cycles(cycles, "phase_cycles")
     if codes.ndim == 3:
@@ -89,15 +90,17 @@ def read_bodies(
 
 
 def _check_headers(material: PackedArray, phase: PackedArray) -> None:
-    """Refuse arrays that cannot be bodies, before they are unpacked."""
+    """Reject arrays that cannot be bodies, before they are unpacked."""
     shape = list(material.shape)
     if len(shape) not in (3, 4) or min(shape) < 1:
-        raise InputError(f"material has the shape {shape}; expected [X, Y, Z] or [N, X, Y, Z]")
+        raise InputError(f"shape {shape}; expected [X, Y, Z] or [N, X, Y, Z]", key="material")
     if math.prod(shape) > MOST_CELLS:
-        raise InputError(f"material has the shape {shape}, {math.prod(shape)} cells; at most {MOST_CELLS}")
+        raise InputError(
+            f"shape {shape} has {math.prod(shape)} cells, expected at most {MOST_CELLS}", key="material"
+        )
     if material.dtype.kind not in "ui":
-        raise InputError(f"material has the type {material.dtype}; expected whole numbers")
+        raise InputError(f"type {material.dtype}; expected integers", key="material")
     if phase.shape != material.shape:
-        raise InputError(f"phase_cycles has the shape {list(phase.shape)}, but material has {shape}")
+        raise InputError(f"shape {list(phase.shape)}; expected that of material, {shape}", key="phase_cycles")
     if phase.dtype.kind not in "uif":
-        raise InputError(f"phase_cycles has the type {phase.dtype}; expected numbers")
+        raise InputError(f"type {phase.dtype}; expected numbers", key="phase_cycles")

@@ -1,4 +1,4 @@
-"""What figures and pages draw of a body: the surfaces of its materials, and how they move."""
+"""Geometry of bodies for figures and pages: moving surfaces, one for each material."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from evoframe_simulators.vox.tracks import POINTS
 
 __all__ = ["geometry_of"]
 
-# Red contracts and blue does not: of the vibrant colours of Paul Tol, made for eyes of all kinds.
+# Red contracts and blue does not: the colorblind-safe "vibrant" scheme of Paul Tol.
 _CONTRACTILE = ("#CC3311", "#EE3377", "#EE7733")
 _PASSIVE = ("#0077BB", "#33BBEE", "#009988")
 _TRANSLUCENT = 0.12
@@ -28,28 +28,28 @@ Cells = NDArray[np.bool_]
 
 
 def geometry_of(settings: VoxSettings, design: Design, frames: int) -> Geometry:
-    """Return the surfaces of a body: one part for each material, and for an enclosure if there is one.
+    """Return the surfaces of a body: one part for each material, and one for an enclosure.
 
-    Voxels are drawn as cubes at rest. Later a corner is displaced by the mean displacement of the voxels
-    that it belongs to, so that the surface has no gaps; that a voxel at the surface swells is not seen. An
-    enclosure is an outermost layer of the canvas that is of one passive material throughout.
+    At rest, voxels are drawn as cubes. A moving corner is displaced by the mean displacement of the voxels
+    that share it, so that the surface has no gaps; the swelling of voxels at the surface is not drawn. An
+    enclosure is an outermost layer of the canvas that consists of one passive material.
 
     Args:
-        settings: They simulate the body.
+        settings: Settings of the simulation.
         design: The body with its controller.
-        frames: How many at most; they are as evenly spread over the steps as these allow.
+        frames: Maximum number of frames, spread evenly over the steps.
 
     Raises:
-        InputError: The design is no body with a controller, or has no voxel.
+        InputError: The design is not a body with a controller, or has no voxels.
         ValueError: *frames* is not positive.
     """
     if frames < 1:
-        raise ValueError(f"expected 1 frame or more, found {frames}")
+        raise ValueError(f"expected at least 1 frame, found {frames}")
     check_design(design)
     material = design.roles[MORPHOLOGY]
     check_codes(material, materials_of(settings))
     if not material.any():
-        raise InputError("morphology has no voxel, so there is nothing to draw")
+        raise InputError("has no voxels to draw", key=MORPHOLOGY)
     last = clock_of(settings, material).steps
     steps = np.linspace(0, last, frames).round().astype(int) if frames > 1 else np.zeros(1, int)
     samples = tuple(np.unique(steps[steps > 0] - 1).tolist())
@@ -64,10 +64,10 @@ def geometry_of(settings: VoxSettings, design: Design, frames: int) -> Geometry:
 
 
 def _corners(voxels: NDArray[np.float64], size: float) -> NDArray[np.float64]:
-    """Return where the corners of all cells are, ``float64[frames, X + 1, Y + 1, Z + 1, 3]``.
+    """Return the positions of the corners of all cells, ``float64[frames, X + 1, Y + 1, Z + 1, 3]``, m.
 
     Args:
-        voxels: Where the voxels are, ``float64[frames, X, Y, Z, 3]``, NaN in empty cells.
+        voxels: Positions of the voxels, ``float64[frames, X, Y, Z, 3]``, m; NaN in empty cells.
         size: Edge of a voxel, m.
     """
     present = np.isfinite(voxels[0, ..., 0])
@@ -81,7 +81,7 @@ def _corners(voxels: NDArray[np.float64], size: float) -> NDArray[np.float64]:
 
 
 def _of_corners(cells: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return for each corner the sum of the cells around it; ``[frames, X, Y, Z, k]`` with one cell more."""
+    """Return for each corner the sum over the adjacent cells: ``[frames, X + 1, Y + 1, Z + 1, k]``."""
     padded = np.pad(cells, ((0, 0), (1, 1), (1, 1), (1, 1), (0, 0)))
     for axis in (1, 2, 3):
         size = padded.shape[axis]
@@ -106,7 +106,7 @@ def _parts(
 
 
 def _enclosure(material: NDArray[np.uint8], materials: Mapping[int, PaletteMaterial]) -> Cells:
-    """Return which cells enclose the others; none if there is no enclosure."""
+    """Return a mask of the cells that form the enclosure; all ``False`` without one."""
     outermost = np.ones(material.shape, np.bool_)
     outermost[1:-1, 1:-1, 1:-1] = False
     codes = set(material[outermost].tolist())
@@ -117,7 +117,7 @@ def _enclosure(material: NDArray[np.uint8], materials: Mapping[int, PaletteMater
 
 
 def _faces(cells: Cells, hiding: Cells) -> NDArray[np.int64]:
-    """Return the faces of cells that no other cell hides, as indices of corners, ``int64[m, 4]``."""
+    """Return the faces of *cells* that no cell in *hiding* covers, as indices of corners, ``int64[m, 4]``."""
     corners = np.arange(np.prod(np.array(cells.shape) + 1)).reshape(np.array(cells.shape) + 1)
     padded = np.pad(hiding, 1)
     found = []
@@ -125,7 +125,7 @@ def _faces(cells: Cells, hiding: Cells) -> NDArray[np.int64]:
         for side in (0, 1):
             beside = np.roll(padded, 1 - 2 * side, axis)[1:-1, 1:-1, 1:-1]
             visible = np.argwhere(cells & ~beside)
-            # Across y the other two axes change places, so that the order stays counter-clockwise.
+            # Across y the other two axes are swapped, so that the order remains counter-clockwise.
             square = [np.insert(at[::-1] if axis == 1 else at, axis, side) for at in _SQUARE]
             quads = np.stack([corners[tuple((visible + offset).T)] for offset in square], axis=1)
             found.append(quads if side else quads[:, ::-1])

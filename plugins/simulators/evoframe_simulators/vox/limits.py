@@ -1,6 +1,6 @@
-"""Limits of what ``vox`` accepts, and the validators of its options.
+"""Limits and validators of the options of ``vox``.
 
-The ranges of numbers that the solver takes are those of its own table.
+The ranges of numbers come from the solver's own table.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ __all__ = [
 ]
 
 LARGEST_CODE = 255
-"""Of a material: a cell of a body is one byte."""
+"""Largest code of a material: a cell of a body is one byte."""
 
 MOST_CELLS = 2**24
-"""Of a canvas; more would not fit into the solver, either."""
+"""Largest number of cells in a canvas, also for the solver."""
 
 MOST_CYCLES = 1e6
-"""Of a phase offset, either way; beyond, single precision knows no fraction of a cycle."""
+"""Largest absolute phase offset; beyond it, single precision cannot hold a fraction of a cycle."""
 
 MOST_RECORD_BYTES = 2**32
-"""Of what is recorded of one body."""
+"""Largest record of one body, bytes."""
 
 MOST_STEPS = 2**53
-"""Of a simulation; every smaller whole number is a ``float`` of its own."""
+"""Largest number of steps in a simulation; a ``float`` holds all smaller integers exactly."""
 
 
 def in_range(span: libvox.Range) -> Callable[[Any, attrs.Attribute[Any], float], None]:
-    """Return a validator that refuses numbers outside a range of the solver."""
+    """Return a validator that rejects numbers outside a range of the solver."""
 
     def check(_: Any, attribute: attrs.Attribute[Any], value: float) -> None:
         if value not in span:
@@ -61,30 +61,30 @@ VALID_PROPERTY = {name: in_range(span) for name, span in libvox.PROPERTY_RANGES.
 
 
 def check_finite(_: Any, attribute: attrs.Attribute[Any], value: Sequence[float]) -> None:
-    """Refuse numbers that are infinite or NaN; an attrs validator.
+    """Reject numbers that are infinite or NaN; an attrs validator.
 
     Raises:
-        ValueError: Shows the numbers.
+        ValueError: A number is not finite.
     """
     if not np.isfinite(value).all():
         raise ValueError(f"'{attribute.name}' must be finite: {list(value)}")
 
 
 def check_distinct(_: Any, attribute: attrs.Attribute[Any], value: Sequence[str]) -> None:
-    """Refuse a list that has a word more than once; an attrs validator.
+    """Reject a list with duplicates; an attrs validator.
 
     Raises:
-        ValueError: Shows the list.
+        ValueError: A word is in the list more than once.
     """
     if len(set(value)) < len(value):
-        raise ValueError(f"'{attribute.name}' must have each one once: {list(value)}")
+        raise ValueError(f"'{attribute.name}' must not contain duplicates: {list(value)}")
 
 
 def check_printable(_: Any, attribute: attrs.Attribute[str], value: str) -> None:
-    """Refuse a text with line breaks or control characters; an attrs validator.
+    """Reject a text with line breaks or control characters; an attrs validator.
 
     Raises:
-        ValueError: Shows the text.
+        ValueError: The text is not printable.
     """
     if not value.isprintable():
         raise ValueError(f"'{attribute.name}' must be one line of printable characters: {value!r}")

@@ -1,4 +1,4 @@
-"""What voxels are made of: the two built-in materials, or a palette of one's own."""
+"""Materials of voxels: the two built-in ones, or a custom palette."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ import evoframe_libvox as libvox
 from evoframe import EMPTY
 from evoframe_simulators.vox.limits import LARGEST_CODE, VALID_PROPERTY, check_printable
 
-__all__ = ["PaletteMaterial", "check_palette", "described", "single", "solver_palette"]
+__all__ = ["PaletteMaterial", "check_palette", "describe_codes", "round_to_single", "solver_palette"]
 
 
 @attrs.frozen
 class PaletteMaterial:
-    """One material of a palette; SI units (physics.md, sections 1, 5 and 9).
+    """A material of a palette, in SI units (docs/physics.md, sections 1, 5 and 9).
 
     Attributes:
-        code: What stands for it in a body, 1 to 255; 0 is an empty cell.
-        youngs_modulus: Pa.
-        poisson_ratio: At least 0, below 0.5; it acts on the twist of bonds only.
-        density: kg/m3.
-        expansion_coefficient: Linear thermal expansion, 1/degree; 0 is passive, and a negative one contracts
-            when the others expand.
-        static_friction: Share of the floor's push up to which a resting voxel sticks.
-        dynamic_friction: Share of the push that brakes a sliding voxel.
-        name: For people.
+        code: Value of its cells in a body, 1 to 255; 0 is an empty cell.
+        youngs_modulus: Young's modulus, Pa.
+        poisson_ratio: Poisson's ratio, at least 0 and below 0.5; it affects only the twist of bonds.
+        density: Density, kg/m3.
+        expansion_coefficient: Linear thermal expansion, 1/degree; 0 is passive, and negative coefficients
+            contract when positive ones expand.
+        static_friction: Coefficient of static friction on the floor.
+        dynamic_friction: Coefficient of dynamic friction.
+        name: Name in messages, figures and exported files.
     """
 
     code: int = attrs.field(validator=[validators.ge(1), validators.le(LARGEST_CODE)])
@@ -43,25 +43,25 @@ class PaletteMaterial:
 
 
 def check_palette(_: Any, __: Any, palette: Sequence[PaletteMaterial]) -> None:
-    """Refuse a palette with one code for two materials; an attrs validator.
+    """Reject a palette in which two materials have the same code; an attrs validator.
 
     Raises:
-        ValueError: Says which code.
+        ValueError: Two materials have the same code.
     """
     codes = [material.code for material in palette]
     for code in codes:
         if codes.count(code) > 1:
-            raise ValueError(f"expected one material for each code, found {codes.count(code)} for {code}")
+            raise ValueError(f"expected one material for each code, found {codes.count(code)} with {code}")
 
 
-def described(materials: Mapping[int, PaletteMaterial]) -> str:
-    """Return the codes that a body may have, in words: ``0 empty, 1 passive, 3 contractile``."""
+def describe_codes(materials: Mapping[int, PaletteMaterial]) -> str:
+    """Return a list of the valid codes for messages: ``0 empty, 1 passive, 3 contractile``."""
     named = {code: f" {material.name}" if material.name else "" for code, material in materials.items()}
     return ", ".join(f"{code}{name}" for code, name in sorted({EMPTY: " empty", **named}.items()))
 
 
 def solver_palette(materials: Mapping[int, PaletteMaterial]) -> dict[int, libvox.Material]:
-    """Return the materials as the solver wants them."""
+    """Return the materials in the form that the solver takes."""
     return {
         code: libvox.Material(
             youngs_modulus=material.youngs_modulus,
@@ -75,7 +75,7 @@ def solver_palette(materials: Mapping[int, PaletteMaterial]) -> dict[int, libvox
     }
 
 
-def single(value: float) -> float:
-    """Return a number as single precision holds it: the engine reads some so (physics.md, section 1)."""
-    with np.errstate(over="ignore"):  # infinite then, and refused by the solver
+def round_to_single(value: float) -> float:
+    """Round a number to single precision, as the engine does for some (docs/physics.md, section 1)."""
+    with np.errstate(over="ignore"):  # becomes infinite, which the solver rejects
         return float(np.float32(value))

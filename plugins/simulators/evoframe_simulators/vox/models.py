@@ -1,4 +1,4 @@
-"""The solver's models of settings, and the clocks of bodies in them."""
+"""Solver models for settings, and the clocks of bodies in them."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ __all__ = [
     "clocks_of",
     "model_of",
     "possible_clocks",
+    "strip_body_index",
     "time_step_of",
-    "without_number",
 ]
 
 _UNLIMITED = 2**63 - 1
-_INSTANT = math.ulp(0.0)  # s; a time step of any length fits
+_INSTANT = math.ulp(0.0)  # s; shorter than any time step
 
 Canvas = tuple[int, int, int]
 
 
 @functools.lru_cache(maxsize=16)
 def model_of(settings: VoxSettings, canvas: Canvas) -> libvox.Model:
-    """Return the model of settings on a canvas; it is read-only, so threads share it.
+    """Return the model of settings on a canvas; it is read-only, so threads can share it.
 
     Raises:
-        ValueError: The solver cannot work with the settings; says what is wrong.
+        ValueError: The solver rejects the settings.
     """
     palette = solver_palette(materials_of(settings))
     return libvox.Model(canvas, palette, _solver_settings(settings), fixed_mask(settings.fixed, canvas))
@@ -45,7 +45,7 @@ def model_of(settings: VoxSettings, canvas: Canvas) -> libvox.Model:
 
 @functools.lru_cache(maxsize=16)
 def acting_codes(settings: VoxSettings) -> NDArray[np.bool_]:
-    """Return of each code whether the offsets change the size of its voxels, ``bool[256]``, read-only."""
+    """Return a mask of the codes whose voxels respond to phase offsets, ``bool[256]``, read-only."""
     acting = np.zeros(256, np.bool_)
     if amplitude_of(settings) != 0.0:
         for code, material in materials_of(settings).items():
@@ -58,13 +58,13 @@ def clock_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Clock:
     """Return the clock of a body, ``uint8[X, Y, Z]``.
 
     Raises:
-        ValueError: It cannot be simulated; says why.
+        ValueError: The body cannot be simulated.
     """
     x, y, z = material.shape
     return _clock(settings, (x, y, z), material.tobytes())
 
 
-@functools.lru_cache(maxsize=8)  # the bodies that meet many controllers just now
+@functools.lru_cache(maxsize=8)  # for bodies that are being paired with many controllers
 def _clock(settings: VoxSettings, canvas: Canvas, cells: bytes) -> Clock:
     material = np.frombuffer(cells, np.uint8).reshape(1, *canvas)
     [clock] = clocks_of(settings, model_of(settings, canvas), material)
@@ -75,7 +75,7 @@ def clocks_of(settings: VoxSettings, model: libvox.Model, material: NDArray[np.u
     """Return the clock of each body, ``uint8[N, X, Y, Z]``.
 
     Raises:
-        ValueError: A body cannot be simulated; says why and which.
+        ValueError: A body cannot be simulated; the message contains its index.
     """
     time_steps, steps = model.time_steps(material)
     return [
@@ -85,20 +85,19 @@ def clocks_of(settings: VoxSettings, model: libvox.Model, material: NDArray[np.u
 
 
 def time_step_of(settings: VoxSettings, material: NDArray[np.uint8]) -> float:
-    """Return the time step of a body, ``uint8[X, Y, Z]``, in s; the duration does not matter.
+    """Return the time step of a body, ``uint8[X, Y, Z]``, in s; it does not depend on the duration.
 
     Raises:
-        ValueError: The solver cannot work with the settings or the body; says why.
+        ValueError: The solver rejects the settings or the body.
     """
     return clock_of(attrs.evolve(settings, duration=_INSTANT), material).time_step
 
 
 def possible_clocks(settings: VoxSettings) -> list[Clock]:
-    """Return every clock that a body can have: that of one pair of materials, or of one that has no bond.
+    """Return every clock that a body can have: one for each pair of materials, and one without bonds.
 
     Raises:
-        ValueError: The solver cannot work with the settings, or no body with a bond is done within the limit
-            of steps; says what is wrong.
+        ValueError: The solver rejects the settings, or every body with a bond exceeds the limit of steps.
     """
     palette = solver_palette(materials_of(settings))
     distinct = sorted({material: code for code, material in palette.items()}.values())
@@ -109,18 +108,18 @@ def possible_clocks(settings: VoxSettings) -> list[Clock]:
     try:
         clocks = clocks_of(settings, free, bodies)
     except ValueError as error:
-        raise ValueError(without_number(error)) from error
+        raise ValueError(strip_body_index(error)) from error
     fewest = min(clock.steps for clock in clocks[: len(bars)])
     if fewest > settings.step_limit:
         raise ValueError(
-            f"duration = {settings.duration} s takes {fewest} steps, "
-            f"more than step_limit = {settings.step_limit}; simulate less time, or raise the limit"
+            f"duration = {settings.duration} s requires {fewest} steps, "
+            f"but step_limit = {settings.step_limit}; reduce duration or increase step_limit"
         )
     return clocks
 
 
-def without_number(error: Exception) -> str:
-    """Return the solver's words without the number of the body, which nobody knows outside of its batch."""
+def strip_body_index(error: Exception) -> str:
+    """Return the solver's message without the index of the body, which is valid only within its batch."""
     return str(error).partition(" (body ")[0]
 
 

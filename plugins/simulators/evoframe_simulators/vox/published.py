@@ -1,8 +1,8 @@
-"""The bodies that others have published, as ``evoframe robustness --published`` compares them.
+"""Published bodies, which ``evoframe robustness --published`` adds to a comparison.
 
-They stand in ``published_sams.json`` beside this module: the soft actuator morphologies of Alcaraz-Herrera
-et al. (arXiv 2408.09107), from their repository biomeld-catheter-controller, licensed under Apache-2.0. Each
-body is a list of layers from the lowest z up; within a layer x runs fastest, then y.
+``published_sams.json`` beside this module contains the soft actuator morphologies of Alcaraz-Herrera et al.
+(arXiv 2408.09107), from their repository biomeld-catheter-controller, licensed under Apache-2.0. Each body is
+a list of layers in order of increasing z; within a layer x runs fastest, then y.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Boxes in which voxels are held."""
+"""Boxes in which voxels are clamped."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ __all__ = ["DEGREES_OF_FREEDOM", "DegreeOfFreedom", "FixedRegion", "fixed_mask",
 DegreeOfFreedom = Literal["x", "y", "z", "rx", "ry", "rz"]
 
 DEGREES_OF_FREEDOM: tuple[DegreeOfFreedom, ...] = get_args(DegreeOfFreedom)
-"""In the order of their bits, the lowest first: the position along each axis, and the rotation about it."""
+"""In the order of their bits, lowest first: translation along each axis, then rotation about it."""
 
 
 @attrs.frozen
 class FixedRegion:
-    """A box; voxels that overlap it are held where they are (physics.md, section 8).
+    """A box; voxels that overlap it are clamped (docs/physics.md, section 8).
 
     Attributes:
-        origin: The box's corner with the least coordinates, as fractions of the canvas.
-        size: Its edges, as fractions of the canvas. The default is the slab x = 0.
-        degrees_of_freedom: Which of them the voxels lose: ``x``, ``y``, ``z``, and ``rx``, ``ry``, ``rz`` for
-            the rotations about the axes of the world.
+        origin: Corner with the smallest coordinates, as fractions of the canvas.
+        size: Lengths of the edges, as fractions of the canvas; the default clamps the slab x = 0.
+        degrees_of_freedom: Clamped degrees of freedom: ``x``, ``y``, ``z``, and ``rx``, ``ry``, ``rz`` for
+            rotations about the axes of the world.
     """
 
     origin: tuple[float, float, float] = attrs.field(default=(0.0, 0.0, 0.0), validator=check_finite)
@@ -42,12 +42,12 @@ class FixedRegion:
 
     @property
     def bits(self) -> int:
-        """The degrees of freedom as the solver and the engine number them."""
+        """The clamped degrees of freedom as bits, in the numbering of solver and engine."""
         return sum(1 << DEGREES_OF_FREEDOM.index(freedom) for freedom in self.degrees_of_freedom)
 
 
 def fixed_mask(regions: Iterable[FixedRegion], canvas: tuple[int, int, int]) -> NDArray[np.uint8]:
-    """Return the degrees of freedom that each cell has lost, as bits, ``uint8[X, Y, Z]``."""
+    """Return the clamped degrees of freedom of each cell as bits, ``uint8[X, Y, Z]``."""
     mask = np.zeros(canvas, np.uint8)
     for region in regions:
         inside = [overlapping(*span) for span in zip(region.origin, region.size, canvas, strict=True)]
@@ -56,7 +56,7 @@ def fixed_mask(regions: Iterable[FixedRegion], canvas: tuple[int, int, int]) -> 
 
 
 def overlapping(start: float, length: float, cells: int) -> NDArray[np.bool_]:
-    """Return which cells of an axis overlap a span in fractions of it; what only touches it does not."""
+    """Return a mask of the cells of an axis that overlap a span of it; touching is not overlapping."""
     index = np.arange(cells)
     held: NDArray[np.bool_] = ((index + 1) / cells > start) & (index / cells < start + length)
     return held

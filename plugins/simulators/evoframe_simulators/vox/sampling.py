@@ -1,4 +1,4 @@
-"""Which steps are sampled."""
+"""Selection of the steps at which a simulation is sampled."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from evoframe_simulators.vox.limits import MOST_STEPS
 
 __all__ = ["Clock", "check_samples"]
 
-_ROUNDING = 1e-12  # relative; an interval that is a multiple of the time step is met, not missed
+_ROUNDING = 1e-12  # relative; tolerance for intervals that are multiples of the time step
 
 
 @attrs.frozen
 class Clock:
     """The time of a body's simulation.
 
-    Samples are counted in nominal steps, which the solver makes in ``substeps`` steps each, so that they fall
-    at the same instants however many there are.
+    Samples are counted in nominal steps, each of which consists of ``substeps`` solver steps, so that the
+    number of substeps does not change the sampled instants.
 
     Attributes:
-        time_step: Of the solver, s.
-        total: How many steps the solver makes, a multiple of ``substeps``.
-        substeps: Steps of the solver in a nominal one.
+        time_step: Time step of the solver, s.
+        total: Number of solver steps, a multiple of ``substeps``.
+        substeps: Number of solver steps in a nominal step.
     """
 
     time_step: float
@@ -36,17 +36,17 @@ class Clock:
 
     @property
     def steps(self) -> int:
-        """How many nominal steps there are."""
+        """Number of nominal steps."""
         return self.total // self.substeps
 
     def nominal(self, record: Record) -> NDArray[np.int64]:
-        """Return the nominal steps after which a simulation is sampled (physics.md, section 11).
+        """Return the nominal steps after which a simulation is sampled (docs/physics.md, section 11).
 
         Args:
-            record: What is asked for; its samples must be among those that are taken.
+            record: The requested record; all its samples must exist.
 
         Returns:
-            Ascending, ``int64[samples]``; 0 is the state before the first step.
+            Steps in ascending order, ``int64[samples]``; 0 is the state before the first step.
         """
         stride = self._stride(record.every)
         if record.samples is None:
@@ -56,51 +56,51 @@ class Clock:
         return np.insert(kept, 0, 0) if record.initial else kept
 
     def samples(self, record: Record) -> NDArray[np.int64]:
-        """Return the solver's steps after which a simulation is sampled, ``int64[samples]``, read-only."""
+        """Return the solver steps after which a simulation is sampled, ``int64[samples]``, read-only."""
         steps = self.nominal(record) * self.substeps
         steps.setflags(write=False)  # bodies with the same clock share them
         return steps
 
     def count(self, every: float) -> int:
-        """Return how many samples are taken, that of the state before the first step not counted."""
+        """Return the number of samples, excluding the state before the first step."""
         return 1 + (self.steps - 1) // self._stride(every)
 
     def last(self, record: Record) -> float:
-        """Return the time of a record's last sample, s; 0 without one."""
+        """Return the time of a record's last sample, s; 0 without samples."""
         index = self.count(record.every) - 1 if record.samples is None else max(record.samples, default=-1)
         if index < 0:
             return 0.0
         return (1 + self._stride(record.every) * index) * self.substeps * self.time_step
 
     def _stride(self, every: float) -> int:
-        """Return the nominal steps from a sample to the next, the first that ends *every* seconds later."""
+        """Return the number of nominal steps between samples: the fewest that take *every* seconds."""
         steps = every / (self.time_step * self.substeps)
         return max(1, math.ceil(min(steps * (1 - _ROUNDING), MOST_STEPS)))
 
 
 def check_samples(record: Record, clocks: Sequence[Clock], duration: float) -> None:
-    """Refuse a record with a sample that some body never has, or that ends before it may.
+    """Reject a record with a sample that some body never reaches, or that ends before ``record.until``.
 
     Args:
-        record: What is asked for.
-        clocks: All that bodies can have.
+        record: The requested record.
+        clocks: All clocks that bodies can have.
         duration: Simulated time, s.
 
     Raises:
-        ConfigurationError: Says what there is.
+        ConfigurationError: The simulation is too short for the record.
     """
     if record.samples:
         last = max(record.samples)
         taken, steps = min((clock.count(record.every), clock.steps) for clock in clocks)
         if last >= taken:
             raise ConfigurationError(
-                f"sample {last} of one every {record.every} s is never taken: vox makes "
-                f"{steps} steps in simulator.duration = {duration} s, samples 0 to {taken - 1}; simulate "
-                "longer, or set an objective that looks earlier or more often"
+                f"sample {last} (one every {record.every} s) does not exist: simulator.duration = {duration} "
+                f"s has {steps} steps, with samples 0 to {taken - 1}; increase simulator.duration, or select "
+                "earlier or more frequent samples"
             )
     reached = min(clock.last(record) for clock in clocks)
     if reached < record.until * (1 - _ROUNDING):
         raise ConfigurationError(
-            f"the last sample is taken at {reached:.6g} s, but {record.until} s must be reached: "
-            f"simulator.duration = {duration} s, and the samples of the objective, must go on as long"
+            f"the last sample is at {reached:.6g} s, expected at least {record.until} s; "
+            f"increase simulator.duration = {duration} s, or select later samples"
         )

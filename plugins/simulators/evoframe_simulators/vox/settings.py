@@ -1,4 +1,4 @@
-"""Settings of ``vox``: one value that decides how bodies are simulated, and what follows from it alone."""
+"""Settings of ``vox``, and quantities that depend on them alone."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from evoframe import CONTRACTILE, CONTROLLER, PASSIVE, Design
 from evoframe_simulators.vox.limits import MOST_STEPS, VALID_PROPERTY, VALID_SETTING
-from evoframe_simulators.vox.materials import PaletteMaterial, check_palette, single
+from evoframe_simulators.vox.materials import PaletteMaterial, check_palette, round_to_single
 from evoframe_simulators.vox.regions import FixedRegion
 
 __all__ = ["VoxSettings", "amplitude_of", "materials_of", "period_of", "phase_cycles"]
 
-# Options that describe the two built-in materials, and so say nothing of a palette.
+# Options of the two built-in materials, which a palette replaces.
 _BUILT_IN = (
     *("youngs_modulus", "poisson_ratio", "density", "expansion_coefficient"),
     *("static_friction", "dynamic_friction"),
@@ -25,50 +25,52 @@ _BUILT_IN = (
 
 @attrs.frozen(cache_hash=True)  # models and clocks are looked up by it
 class VoxSettings:
-    """Settings of a simulation; the defaults are the paper's (paper.md, "The simulation of one pair").
+    """Settings of a simulation; defaults from the paper (docs/experiment.md, "The simulation of a pair").
 
-    Each value is in its own range. Whether the solver can work with all of them together is checked by
-    :func:`evoframe_simulators.vox.models.possible_clocks`.
+    The class checks the range of each value;
+    :func:`evoframe_simulators.vox.models.possible_clocks` checks that the solver accepts their combination.
 
     Attributes:
         duration: Simulated time, s.
         voxel_size: Edge of a voxel, m.
-        youngs_modulus: Of both materials, Pa.
-        poisson_ratio: Of both materials.
-        density: Of both materials, kg/m3.
-        expansion_coefficient: Linear thermal expansion of a contractile voxel, 1/degree; 0 switches it off.
-        static_friction: Of both materials on the floor: share of its push up to which a resting voxel sticks.
-        dynamic_friction: Of both materials: share of a push that brakes a sliding voxel.
-        palette: If it has entries, they replace the materials 1 (passive) and 3 (contractile), and the six
-            values above have no effect: tables with ``code``, these values, and perhaps ``name``.
-        temperature_base: Degrees at which a voxel has its nominal size.
+        youngs_modulus: Young's modulus of both built-in materials, Pa.
+        poisson_ratio: Poisson's ratio of both built-in materials.
+        density: Density of both built-in materials, kg/m3.
+        expansion_coefficient: Linear thermal expansion of a contractile voxel, 1/degree; 0: no contraction.
+        static_friction: Coefficient of static friction of both built-in materials on the floor.
+        dynamic_friction: Coefficient of dynamic friction of both built-in materials.
+        palette: Materials that replace 1 (passive) and 3 (contractile) and the six values above: tables with
+            ``code``, these six values and optionally ``name``. Empty: the built-in materials.
+        temperature_base: Temperature at which a voxel has its nominal size, degrees.
         temperature_amplitude: Highest temperature of the oscillation, degrees (the paper's engine counts from
-            zero, so the swing is this less the base: 14.47 degrees, a linear strain of 0.1447).
-        frequency: Of the contraction, Hz.
-        phase_unit: How the controller's offsets are read. ``cycles`` is what the paper's engine does,
-            ``radians`` what the paper says.
-        start_time: When the contraction begins, s; its clock runs from 0 all the same.
-        ramp: Seconds from then until it has its full amplitude.
+            zero, so the swing is this minus the base: 14.47 degrees, a linear strain of 0.1447).
+        frequency: Frequency of the contraction, Hz.
+        phase_unit: Unit of the controller's offsets: ``cycles`` as in the paper's engine, ``radians`` as in
+            the paper's text.
+        start_time: Time at which the contraction starts, s; its phase still runs from time 0.
+        ramp: Time over which the contraction reaches its full amplitude, s.
         gravity: Acceleration along z, m/s2; negative is down.
-        floor: Whether there is one, at z = 0.
-        floor_slope: Degrees; the floor is z = x tan(slope), but pushes vertically all the same.
-        fluid_drag: Half the density of the fluid around times its drag coefficient, kg/m3.
-        fixed: Boxes whose voxels are held: tables with ``origin`` and ``size``, fractions of the canvas, and
-            ``degrees_of_freedom``, a list out of x, y, z, rx, ry, rz. With none the body is free.
-        self_collision: Whether voxels that are no neighbours repel each other.
-        collision_envelope: How close they must come, in mean sizes: 1.5 in the paper's engine, 1 is touching.
-        collision_horizon: How far candidates for contact are looked for, in voxel edges.
-        complete_contacts: Whether no contact is missed; the paper's engine may find some late.
-        contact_damping: Damping ratio of the push between voxels; the paper's engine has none.
-        contact_friction: Whether voxels that touch brake each other; not in the paper's engine.
-        time_step_fraction: Of the largest stable time step.
-        substeps: Steps that each such step is made in; samples are taken at the same instants however many.
-        step_limit: A body that needs more steps is refused. One without bonds needs several times as many.
+        floor: Whether to add a floor at z = 0.
+        floor_slope: Slope of the floor z = x tan(slope), degrees; its normal force remains vertical.
+        fluid_drag: Half the density of the surrounding fluid times the drag coefficient, kg/m3.
+        fixed: Boxes whose voxels are clamped: tables with ``origin`` and ``size``, fractions of the canvas,
+            and ``degrees_of_freedom``, a list from x, y, z, rx, ry, rz. Empty: the body is free.
+        self_collision: Whether voxels that are not neighbors repel each other.
+        collision_envelope: Distance at which repulsion starts, in mean voxel sizes: 1.5 in the paper's
+            engine, 1 for touching voxels.
+        collision_horizon: Radius of the search for contact candidates, in voxel edges.
+        complete_contacts: Whether to find every contact in time; the paper's engine may find some late.
+        contact_damping: Damping ratio of contacts between voxels; 0 in the paper's engine.
+        contact_friction: Whether contacts between voxels have friction; not in the paper's engine.
+        time_step_fraction: Time step as a fraction of the largest stable one.
+        substeps: Number of solver steps in each time step; it does not change the sampled instants.
+        step_limit: Maximum number of steps of a body; bodies without bonds may take several times as many.
         bond_damping: Damping ratio of the bonds.
-        slow_damping: Damping ratio against the ground.
-        collision_damping: Damping ratio of the floor's push.
-        largest_strain: A bond that is strained more makes the body count as diverged.
-        largest_distance: So does a voxel that is further from its start, in longest edges of the canvas.
+        slow_damping: Damping ratio of the motion relative to the ground.
+        collision_damping: Damping ratio of the floor contact.
+        largest_strain: Strain of a bond beyond which the body counts as diverged.
+        largest_distance: Distance of a voxel from its start, in longest edges of the canvas, beyond which the
+            body counts as diverged.
     """
 
     duration: float = attrs.field(default=0.07, validator=VALID_SETTING["duration"])
@@ -110,7 +112,7 @@ class VoxSettings:
 
 
 def materials_of(settings: VoxSettings) -> dict[int, PaletteMaterial]:
-    """Return the material of each code that a body may have."""
+    """Return the material of each valid code, except 0 (empty)."""
     if settings.palette:
         return {material.code: material for material in settings.palette}
     options = {name: getattr(settings, name) for name in _BUILT_IN}
@@ -128,13 +130,14 @@ def phase_cycles(settings: VoxSettings, design: Design) -> NDArray[Any]:
 
 
 def amplitude_of(settings: VoxSettings) -> float:
-    """Return the amplitude of the temperature's swing, degrees.
+    """Return the amplitude of the temperature oscillation, degrees.
 
-    The engine holds it in single precision (physics.md, section 1): without, 4e-11 m are lost.
+    The engine holds it in single precision (docs/physics.md, section 1); double precision would change
+    results by 4e-11 m.
     """
-    return single(settings.temperature_amplitude - settings.temperature_base)
+    return round_to_single(settings.temperature_amplitude - settings.temperature_base)
 
 
 def period_of(settings: VoxSettings) -> float:
-    """Return the period of the temperature's swing, s, which the engine holds in single precision, too."""
-    return single(1 / settings.frequency)
+    """Return the period of the temperature oscillation, s, in single precision like the engine."""
+    return round_to_single(1 / settings.frequency)

@@ -1,4 +1,4 @@
-"""Simulation of a batch of designs: those of one canvas together, as far as they are sampled as often."""
+"""Simulation of batches: one solver call for designs of the same canvas and number of samples."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import numpy as np
 
 from evoframe import MORPHOLOGY, Design, InputError, Outcome, Record
 from evoframe_simulators.vox.bodies import check_codes, check_design
-from evoframe_simulators.vox.models import Canvas, clock_of, model_of, without_number
+from evoframe_simulators.vox.models import Canvas, clock_of, model_of, strip_body_index
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
-from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_room, shape_of
+from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_size, shape_of
 
 __all__ = ["simulate"]
 
 
 def simulate(settings: VoxSettings, designs: Sequence[Design], record: Record) -> list[Outcome]:
-    """Return the outcome of each design, in order; one without a voxel counts as diverged at step 0.
+    """Return the outcome of each design, in order; a design without voxels counts as diverged at step 0.
 
     Raises:
-        InputError: A design is no body with a controller, or its record would be too large.
+        InputError: A design is not a body with a controller, or its record would be too large.
     """
     outcomes: dict[int, Outcome] = {}
     canvases: dict[Canvas, dict[int, Design]] = defaultdict(dict)
@@ -36,23 +36,23 @@ def simulate(settings: VoxSettings, designs: Sequence[Design], record: Record) -
     for canvas, group in canvases.items():
         try:
             outcomes |= _on_canvas(settings, canvas, group, record)
-        except ValueError as error:  # the solver's words for what cells hold
-            for design in group.values():  # it does not say which code it does not know
+        except ValueError as error:  # the solver rejects the values of cells
+            for design in group.values():  # its message does not contain the unknown code
                 check_codes(design.roles[MORPHOLOGY], materials_of(settings))
-            raise InputError(without_number(error)) from error
+            raise InputError(strip_body_index(error)) from error
     return [outcomes[index] for index in range(len(designs))]
 
 
 def _on_canvas(
     settings: VoxSettings, canvas: Canvas, designs: Mapping[int, Design], record: Record
 ) -> dict[int, Outcome]:
-    """Simulate designs on one canvas, each number of samples in one call of the solver."""
+    """Simulate designs on one canvas, in one solver call for each number of samples."""
     clocks = {index: clock_of(settings, design.roles[MORPHOLOGY]) for index, design in designs.items()}
     samples = {clock: clock.samples(record) for clock in set(clocks.values())}
     tracks = tuple(track for track in (*POINTS, *FURTHER) if track in record.tracks)
     outcomes: dict[int, Outcome] = {}
     for count in {len(taken) for taken in samples.values()}:
-        check_room(tracks, canvas, count)
+        check_size(tracks, canvas, count)
         chosen = {index: clock for index, clock in clocks.items() if len(samples[clock]) == count}
         result = model_of(settings, canvas).simulate(
             np.stack([designs[index].roles[MORPHOLOGY] for index in chosen]),

@@ -1,4 +1,4 @@
-"""The simulator ``vox``: bodies of voxels, held or free, whose contractile voxels swing."""
+"""The simulator ``vox``: clamped or free bodies of voxels, some of which contract periodically."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from evoframe import (
     Record,
     Variant,
 )
-from evoframe_simulators.files import naming
+from evoframe_simulators.files import naming_source
 from evoframe_simulators.vox.bodies import check_codes, check_design, read_bodies
 from evoframe_simulators.vox.geometry import geometry_of
-from evoframe_simulators.vox.models import acting_codes, model_of, possible_clocks, without_number
+from evoframe_simulators.vox.models import acting_codes, model_of, possible_clocks, strip_body_index
 from evoframe_simulators.vox.published import published_bodies
 from evoframe_simulators.vox.sampling import check_samples
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
@@ -40,15 +40,14 @@ from evoframe_simulators.vox.vxa import left_out, read_vxa, write_vxa
 __all__ = ["Vox"]
 
 
-@attrs.frozen(cache_hash=True)  # models and clocks are looked up by it
+@attrs.frozen(cache_hash=True)  # models and clocks are cached by it
 class Vox(VoxSettings):
-    """Voxels on libvox; the defaults are the paper's (paper.md, "The simulation of one pair").
+    """Voxel simulator on libvox; defaults from the paper (docs/experiment.md, "The simulation of a pair").
 
-    The whole slab x = 0 of the canvas is clamped in all six degrees of freedom, and there is neither gravity
-    nor floor. A design without any voxel cannot be simulated and counts as diverged at step 0. Beside its
-    points it records ``voxels``, ``energy``, ``strain`` and ``momentum``: see
-    ``evoframe_simulators.vox.tracks``. Its options are the fields of
-    :class:`~evoframe_simulators.vox.settings.VoxSettings`.
+    By default the slab x = 0 of the canvas is clamped in all six degrees of freedom, without gravity or
+    floor. A design without voxels counts as diverged at step 0. Besides the points, ``vox`` can record
+    ``voxels``, ``energy``, ``strain`` and ``momentum`` (see ``evoframe_simulators.vox.tracks``). The options
+    are the fields of :class:`~evoframe_simulators.vox.settings.VoxSettings`.
     """
 
     requires: ClassVar[tuple[str, ...]] = (MORPHOLOGY, CONTROLLER)
@@ -56,29 +55,29 @@ class Vox(VoxSettings):
     formats: ClassVar[tuple[str, ...]] = ("vxa",)
 
     def __attrs_post_init__(self) -> None:
-        possible_clocks(self)  # the solver has the last word on what it can do with these settings
+        possible_clocks(self)  # raises if the solver rejects the combination
 
     def check(self, record: Record) -> None:
-        """Refuse a record with a track or a sample that there will not be, or that ends too early.
+        """Reject a record with an unknown track or a missing sample, or that ends before ``record.until``.
 
         Raises:
-            ConfigurationError: Says what there is.
+            ConfigurationError: The record cannot be produced; names the available tracks or samples.
         """
         check_tracks(record.tracks)
         check_samples(record, possible_clocks(self), self.duration)
 
     def key(self, design: Design, record: Record) -> bytes:
-        """Return a digest of the body, the offsets that act, and the record.
+        """Return a digest of the body, the offsets that have an effect, and the record.
 
         Raises:
-            InputError: The design is no body with a controller.
+            InputError: The design is not a body with a controller.
         """
         check_design(design)
         material, phase = design.roles[MORPHOLOGY], phase_cycles(self, design)
         acting = phase[acting_codes(self).take(material)]
-        with np.errstate(over="ignore"):  # left to the solver to refuse
+        with np.errstate(over="ignore"):  # the solver rejects such values
             single = acting.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
-        digest = hashlib.blake2b(_written(material.shape, record), digest_size=20)
+        digest = hashlib.blake2b(_header(material.shape, record), digest_size=20)
         digest.update(material.tobytes())
         digest.update(single.tobytes())
         return digest.digest()
@@ -87,69 +86,69 @@ class Vox(VoxSettings):
         """Return the outcome of each design, in order.
 
         Raises:
-            InputError: A design is no body with a controller, or its record would be too large.
+            InputError: A design is not a body with a controller, or its record would be too large.
         """
         return simulate(self, designs, record)
 
     def variants(self, design: Design, record: Record) -> list[Variant]:
-        """Return what ``evoframe verify`` compares a design with (see :mod:`.verification`).
+        """Return the variants to which ``evoframe verify`` compares a design (see :mod:`.verification`).
 
         Raises:
-            InputError: The design is no body with a controller.
+            InputError: The design is not a body with a controller.
         """
         check_design(design)
         try:
             return [Variant(*change) for change in changes(self, design, record)]
-        except ValueError as error:  # the solver's words for what cells hold
-            raise InputError(without_number(error)) from error
+        except ValueError as error:  # the solver rejects the values of cells
+            raise InputError(strip_body_index(error)) from error
 
     def geometry(self, design: Design, frames: int) -> Geometry:
-        """Return what is drawn of a body (see :mod:`.geometry`).
+        """Return the surfaces of a body for drawing (see :mod:`.geometry`).
 
         Raises:
-            InputError: The design is no body with a controller, or has no voxel.
+            InputError: The design is not a body with a controller, or has no voxels.
             ValueError: *frames* is not positive.
         """
         return geometry_of(self, design, frames)
 
     def random_controller(self, design: Design, rng: np.random.Generator) -> Design:
-        """Return the body with offsets drawn from [-2 pi, 2 pi), uniformly, for every cell of its canvas.
+        """Return the body with offsets drawn uniformly from [-2 pi, 2 pi) for every cell of its canvas.
 
-        Cells that are empty or do not act have offsets too, so that all bodies of a canvas get the same. As
-        with any controller, ``phase_unit`` says how they are read.
+        Empty and passive cells also receive offsets, so that all bodies of a canvas receive the same ones. As
+        with any controller, ``phase_unit`` determines their unit.
 
         Raises:
-            InputError: The design is no body with a controller.
+            InputError: The design is not a body with a controller.
         """
         check_design(design)
         offsets = rng.uniform(-math.tau, math.tau, design.roles[MORPHOLOGY].shape)
         return design.with_role(CONTROLLER, offsets)
 
     def published(self) -> list[tuple[str, Design]]:
-        """Return the bodies of :mod:`.published` with their labels, all offsets being 0."""
+        """Return the labels and bodies of :mod:`.published`, with all offsets 0."""
         return [
             (label, Design({MORPHOLOGY: material, CONTROLLER: np.zeros(material.shape)}))
             for label, material in published_bodies().items()
         ]
 
     def read(self, path: Path) -> list[tuple[str, Design]]:
-        """Return the bodies of an ``.npz`` or ``.vxa`` file with their labels.
+        """Return the labels and bodies of an ``.npz`` or ``.vxa`` file.
 
-        An ``.npz`` file has ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``, codes of the palette) and
-        ``phase_cycles`` of the same shape. The offsets of a ``.vxa`` file are taken as they stand there, so
-        that ``phase_unit`` says how they are read.
+        An ``.npz`` file contains ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``, codes of the palette) and
+        ``phase_cycles`` of the same shape. The offsets of a ``.vxa`` file are not converted; ``phase_unit``
+        determines their unit.
 
         Raises:
-            InputError: The file cannot be read, or is something else.
+            InputError: The file cannot be read, or is of another kind.
         """
         materials = materials_of(self)
         if path.suffix.lower() == ".vxa":
             file = read_vxa(path)
-            with naming(path):
+            with naming_source(path):
                 check_codes(file.material, materials)
             return [(path.name, Design({MORPHOLOGY: file.material, CONTROLLER: file.phase}))]
         if path.suffix.lower() != ".npz":
-            raise InputError(f"{path}: vox reads .npz and .vxa files, and this is neither by its name")
+            raise InputError("expected a file named *.npz or *.vxa", source=path)
         unit = 1.0 if self.phase_unit == "cycles" else math.tau
         return [
             (label, Design({MORPHOLOGY: material, CONTROLLER: phase_cycles * unit}))
@@ -158,30 +157,30 @@ class Vox(VoxSettings):
 
     @staticmethod
     def settings_of(path: Path) -> Mapping[str, Any] | None:
-        """Return all options as a ``.vxa`` file has them, as TOML values; ``None`` for other files.
+        """Return all options of a ``.vxa`` file as TOML values; ``None`` for other files.
 
         Raises:
-            InputError: The file cannot be read, is no such file, or asks for what vox does not do; says what.
+            InputError: The file cannot be read, is not a VXA file, or uses features that vox lacks.
         """
         if path.suffix.lower() != ".vxa":
             return None
         file = read_vxa(path)
-        with naming(path):
+        with naming_source(path):
             settings = file.settings()
-        # TOML has lists for tuples.
+        # TOML has lists instead of tuples.
         return attrs.asdict(
             settings, value_serializer=lambda _, __, value: list(value) if isinstance(value, tuple) else value
         )
 
     def export(self, design: Design, format: str) -> Export:  # noqa: A002 - the protocol's word
-        """Return a design with these settings as a file of the format ``vxa``.
+        """Return a design with these settings as a file in the format ``vxa``.
 
         Raises:
-            ConfigurationError: There is no such format.
-            InputError: The design cannot be simulated, or has what the format cannot say.
+            ConfigurationError: The format is unknown.
+            InputError: The design cannot be simulated, or cannot be expressed in the format.
         """
         if format not in self.formats:
-            raise ConfigurationError(f"vox does not write '{format}'; formats: {', '.join(self.formats)}")
+            raise ConfigurationError(f"unknown format '{format}'; formats of vox: {', '.join(self.formats)}")
         check_design(design)
         material, phase = design.roles[MORPHOLOGY], phase_cycles(self, design)
         acting = acting_codes(self)[material]
@@ -189,11 +188,11 @@ class Vox(VoxSettings):
         return Export(write_vxa(self, material, phase, acting), left_out(self))
 
     def provenance(self) -> dict[str, str]:
-        """Return the kernel that computes, and the compiler that made it."""
+        """Return the solver's kernel and the compiler that built it."""
         return {"libvox kernel": model_of(self, (1, 1, 1)).kernel, "libvox compiler": libvox.COMPILER}
 
 
 @functools.lru_cache(maxsize=16)
-def _written(shape: tuple[int, ...], record: Record) -> bytes:
-    """Return in bytes what a key says beside what stands in the cells."""
+def _header(shape: tuple[int, ...], record: Record) -> bytes:
+    """Return the part of a key that does not depend on the contents of cells."""
     return repr((shape, record)).encode()

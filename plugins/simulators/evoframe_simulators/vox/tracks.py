@@ -1,4 +1,4 @@
-"""What can be recorded of a simulation."""
+"""Tracks that a simulation can record."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ import evoframe_libvox as libvox
 from evoframe import ConfigurationError, InputError
 from evoframe_simulators.vox.limits import MOST_RECORD_BYTES
 
-__all__ = ["FURTHER", "POINTS", "check_room", "check_tracks", "shape_of"]
+__all__ = ["FURTHER", "POINTS", "check_size", "check_tracks", "shape_of"]
 
 POINTS: tuple[libvox.Track, ...] = ("tip", "face", "body")
-"""Each ``float64[samples, 3]``, m: the last voxel in cell order, and the mass-weighted means of the voxels
-with the largest initial x and of all voxels."""
+"""Positions ``float64[samples, 3]``, m: of the last voxel in cell order, and the mass-weighted means of the
+voxels with the largest initial x and of all voxels."""
 
 FURTHER: tuple[libvox.Track, ...] = ("voxels", "energy", "strain", "momentum")
-"""``voxels``: ``float64[samples, X, Y, Z, 3]``, m, NaN in empty cells. ``energy``: ``[samples, 2]``, J,
-strain energy of the bonds and kinetic energy. ``strain``: ``[samples, 2]``, the least and the greatest of the
-bonds. ``momentum``: ``[samples, 6]``, kg m/s and, about the origin, kg m2/s."""
+"""``voxels``: positions ``float64[samples, X, Y, Z, 3]``, m, NaN in empty cells. ``energy``:
+``[samples, 2]``, strain energy of the bonds and kinetic energy, J. ``strain``: ``[samples, 2]``, smallest and
+largest strain of a bond. ``momentum``: ``[samples, 6]``, linear, kg m/s, and angular about the origin,
+kg m2/s."""
 
 _WIDTHS = {"energy": 2, "strain": 2, "momentum": 6}
 
@@ -29,28 +30,27 @@ def shape_of(track: str, canvas: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def check_tracks(tracks: Iterable[str]) -> None:
-    """Refuse what cannot be recorded.
+    """Reject unknown tracks.
 
     Raises:
-        ConfigurationError: Says what can.
+        ConfigurationError: A track is unknown; names the available ones.
     """
     for track in tracks:
         if track not in (*POINTS, *FURTHER):
             raise ConfigurationError(
-                f"vox has no track '{track}'; points: {', '.join(POINTS)}; "
-                f"further tracks: {', '.join(FURTHER)}"
+                f"unknown track '{track}'; points: {', '.join(POINTS)}; other tracks: {', '.join(FURTHER)}"
             )
 
 
-def check_room(tracks: Iterable[str], canvas: tuple[int, ...], samples: int) -> None:
-    """Refuse a record that would not fit into the memory of most machines, before it is allocated.
+def check_size(tracks: Iterable[str], canvas: tuple[int, ...], samples: int) -> None:
+    """Reject a record that exceeds the memory of most machines, before it is allocated.
 
     Raises:
-        InputError: Says how large it would be, and what to do.
+        InputError: The record is too large.
     """
     size = 8 * samples * sum(math.prod(shape_of(track, canvas)) for track in tracks)
     if size > MOST_RECORD_BYTES:
         raise InputError(
-            f"{samples} samples of {', '.join(tracks)} would take {size / 2**30:.1f} GiB for one body, "
-            f"at most {MOST_RECORD_BYTES / 2**30:.0f}; record fewer samples"
+            f"{samples} samples of {', '.join(tracks)} require {size / 2**30:.1f} GiB for one body, "
+            f"expected at most {MOST_RECORD_BYTES / 2**30:.0f} GiB; record fewer samples"
         )

@@ -1,4 +1,4 @@
-"""What a design is compared with, to see whether its score is real (paper.md, ``evoframe verify``)."""
+"""Variants of a simulation that show whether a score is an artifact, for ``evoframe verify``."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ S = TypeVar("S", bound=VoxSettings)
 
 _DRAWS = 10
 _JITTER = 0.01
-_SEED = 20251024  # of all jitter, so that a verification can be repeated
+_SEED = 20251024  # of all jitter, so that a verification is reproducible
 
 
 def changes(settings: S, design: Design, record: Record) -> Iterator[tuple[str, S, Design, Record]]:
-    """Yield the design's simulations with one thing changed in each: its name, and what is simulated how.
+    """Yield simulations that differ from the original in one way: name, settings, design and record.
 
-    Twice the duration is sampled at twice the instants, to the step: the n-th step of the design becomes its
-    2n-th, whatever the interval of the record. Where the record takes every sample that there is, the longer
-    simulation gives more of them. Half the time step is left out where the solver cannot divide it further;
-    it is made by twice the substeps, so that the instants stay the same.
+    With twice the duration, samples are taken at exactly twice the instants: step n of the original becomes
+    step 2n, for any interval of the record. A record of all samples yields more of them in the longer
+    simulation. Half the time step is obtained by doubling the substeps, so that the sampled instants do not
+    change; it is omitted if the solver cannot divide the step further.
 
     Args:
-        settings: Simulate the design; those that are yielded are of the same class.
+        settings: Settings of the original simulation; the yielded settings have the same class.
         design: A body with its controller.
-        record: What is recorded of the unchanged simulation.
+        record: Record of the original simulation.
 
     Raises:
-        ValueError: The solver cannot work with the changed settings, or with the body; says why.
+        ValueError: The solver rejects the changed settings or the body.
     """
     limit = min(2 * settings.step_limit, MOST_STEPS)
     longer = attrs.evolve(settings, duration=2 * settings.duration, step_limit=limit)
@@ -54,7 +54,7 @@ def changes(settings: S, design: Design, record: Record) -> Iterator[tuple[str, 
 
 
 def _still(settings: S) -> S:
-    """Return settings in which no material expands."""
+    """Return settings without thermal expansion."""
     if not settings.palette:
         return attrs.evolve(settings, expansion_coefficient=0.0)
     palette = tuple(attrs.evolve(material, expansion_coefficient=0.0) for material in settings.palette)
@@ -67,8 +67,8 @@ def _later(settings: VoxSettings, longer: VoxSettings, design: Design, record: R
     if record.samples is None or not material.any():
         return record
     steps = clock_of(settings, material).nominal(attrs.evolve(record, initial=False))
-    last = clock_of(longer, material).steps  # twice the steps, or one less
+    last = clock_of(longer, material).steps  # twice the steps, or one fewer
     samples = tuple(min(2 * step, last) - 1 for step in steps.tolist())
-    # What must be reached is reached, as the record could be delivered before; other bodies, which have other
-    # instants, do not matter here.
+    # The original record reached its "until", so this one does as well; the instants of other bodies, which
+    # differ, are irrelevant here.
     return attrs.evolve(record, every=0.0, samples=samples, until=0.0)

@@ -1,8 +1,9 @@
-"""Bodies from files: what is one is read, and whatever else there is in a file is refused by name."""
+"""Reading of bodies from files, and rejection of everything else."""
 
 from __future__ import annotations
 
 import math
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -22,107 +23,118 @@ MATERIALS = materials_of(Vox())
 
 
 @pytest.mark.parametrize(
-    ("content", "message"),
+    ("content", "key", "problem"),
     [
         *DAMAGED,
         pytest.param(
             bodies(material=np.array([{}], object)[None, None]),
-            "material has the type object; expected whole numbers",
+            "material",
+            "type object",
             id="a pickle",
         ),
         pytest.param(
             bodies(material=claiming("(1000000000000, 2, 2)")),
-            r"material has the shape \[1000000000000, 2, 2\], 4000000000000 cells; at most 16777216",
+            "material",
+            r"\[1000000000000, 2, 2\] .* 4000000000000 cells, .* 16777216$",
             id="10^12 cells",
         ),
         pytest.param(
-            bodies(material=claiming(f"({2**40}, {2**40}, 1)")), "cells; at most 16777216", id="2^80 cells"
+            bodies(material=claiming(f"({2**40}, {2**40}, 1)")), "material", " 16777216$", id="2^80 cells"
         ),
         pytest.param(
-            bodies(material=claiming("(-4, -2, 2)")), r"material has the shape \[-4, -2, 2\]", id="negative"
+            bodies(material=claiming("(-4, -2, 2)")), "material", r"shape \[-4, -2, 2\]", id="negative"
         ),
         pytest.param(
             bodies(material=SOLID[0]),
-            r"material has the shape \[2, 2\]; expected \[X, Y, Z\] or \[N, X, Y, Z\]",
+            "material",
+            r"shape \[2, 2\].* \[X, Y, Z\] or \[N, X, Y, Z\]",
             id="flat",
         ),
         pytest.param(
             bodies(material=SOLID[:0], phase_cycles=ZERO[:0]),
-            r"material has the shape \[0, 2, 2\]",
+            "material",
+            r"shape \[0, 2, 2\]",
             id="no cells",
         ),
-        pytest.param(
-            bodies(material=SOLID * 1.0), "material has the type float64; expected whole numbers", id="floats"
-        ),
+        pytest.param(bodies(material=SOLID * 1.0), "material", "type float64", id="floats"),
         pytest.param(
             bodies(material=SOLID * 2),
-            "material has the code 2; codes: 0 empty, 1 passive, 3 contractile$",
+            "material",
+            "code 2.* 0 empty, 1 passive, 3 contractile$",
             id="code 2",
         ),
         pytest.param(
-            bodies(material=SOLID + np.uint16(256)), "material has the code 257", id="a code beyond uint8"
+            bodies(material=SOLID + np.uint16(256)), "material", "code 257", id="a code beyond uint8"
         ),
-        pytest.param(bodies(material=SOLID * 0), "material: body 0 has no voxel", id="no voxel"),
+        pytest.param(bodies(material=SOLID * 0), "material", "body 0", id="no voxel"),
         pytest.param(
             bodies(material=np.stack([SOLID, SOLID * 0]), phase_cycles=np.stack([ZERO, ZERO])),
-            "material: body 1 has no voxel",
+            "material",
+            "body 1",
             id="no voxel in the second",
         ),
         pytest.param(
             bodies(phase_cycles=ZERO[1:]),
-            r"phase_cycles has the shape \[3, 2, 2\], but material has \[4, 2, 2\]",
+            "phase_cycles",
+            r"\[3, 2, 2\].* \[4, 2, 2\]",
             id="phase of another shape",
         ),
         pytest.param(
             bodies(phase_cycles=claiming("(1000000000000, 2, 2)", "'<f8'")),
-            r"phase_cycles has the shape \[1000000000000, 2, 2\], but material has",
+            "phase_cycles",
+            r"\[1000000000000, 2, 2\].* \[4, 2, 2\]",
             id="10^12 phases",
         ),
         pytest.param(
-            bodies(phase_cycles=np.full(CELLS, "x")), "phase_cycles has the type <U1", id="letters as phase"
+            bodies(phase_cycles=np.full(CELLS, "x")), "phase_cycles", "type <U1", id="letters as phase"
         ),
         pytest.param(
-            bodies(phase_cycles=claiming(descr=f"'|S{10**9}'")), "phase_cycles has the type", id="long texts"
+            bodies(phase_cycles=claiming(descr=f"'|S{10**9}'")), "phase_cycles", r"type \|S", id="long texts"
         ),
-        pytest.param(
-            bodies(phase_cycles=ZERO * math.nan), "phase_cycles has a value that is not finite", id="nan"
-        ),
+        pytest.param(bodies(phase_cycles=ZERO * math.nan), "phase_cycles", "finite", id="nan"),
         pytest.param(
             bodies(phase_cycles=np.full(CELLS, np.finfo(np.longdouble).max)),
-            "phase_cycles has",
+            "phase_cycles",
+            "finite|cycles",
             id="long double",
         ),
         pytest.param(
             bodies(phase_cycles=ZERO + 1e300),
-            r"phase_cycles has the value 1e\+300; at most 1e\+06 cycles",
+            "phase_cycles",
+            r" 1e\+300 .* 1e\+06",
             id="many cycles",
         ),
         pytest.param(
             bodies(phase_cycles=np.full(CELLS, np.iinfo(np.int64).min)),
-            r"phase_cycles has the value 9\.22337e\+18; at most 1e\+06 cycles",
+            "phase_cycles",
+            r" 9\.22337e\+18 .* 1e\+06",
             id="the int64 without an absolute value",
         ),
     ],
 )
-def test_what_is_no_body_is_refused_by_name(tmp_path: Path, content: bytes, message: str) -> None:
+def test_a_file_without_bodies_is_rejected(tmp_path: Path, content: bytes, key: str, problem: str) -> None:
     path = tmp_path / "given.npz"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=message) as caught:
+    with pytest.raises(InputError) as caught:
         read_bodies(path, MATERIALS)
-    assert str(caught.value).startswith(f"{path}: ")
+    assert caught.value.source == str(path)
+    assert caught.value.key == key
+    assert re.search(problem, caught.value.problem)
 
 
 @pytest.mark.parametrize("make", [lambda _: None, Path.mkdir])
-def test_what_is_no_file_is_refused_by_name(tmp_path: Path, make: Callable[[Path], None]) -> None:
+def test_a_missing_file_or_a_directory_is_rejected(tmp_path: Path, make: Callable[[Path], None]) -> None:
     make(tmp_path / "given.npz")
-    with pytest.raises(InputError, match=r"given\.npz: cannot be read: "):
+    with pytest.raises(InputError) as caught:
         read_bodies(tmp_path / "given.npz", MATERIALS)
+    assert caught.value.source == str(tmp_path / "given.npz")
+    assert isinstance(caught.value.__cause__, OSError)
 
 
 @pytest.mark.parametrize("version", [(1, 0), (2, 0), (3, 0)])
 @pytest.mark.parametrize("suffix", ["", ".npy"])
 @pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
-def test_each_way_to_write_an_array_is_read(
+def test_every_encoding_of_an_array_is_read(
     tmp_path: Path, version: tuple[int, int], suffix: str, method: int
 ) -> None:
     path = tmp_path / "given.npz"
@@ -165,7 +177,7 @@ def damaged(content: bytes, flips: list[tuple[int, int]], length: int | None) ->
     return bytes(changed[:length])
 
 
-def assert_bodies_or_refused(path: Path) -> None:
+def assert_bodies_or_rejected(path: Path) -> None:
     try:
         read = read_bodies(path, MATERIALS)
     except InputError:
@@ -180,18 +192,18 @@ def assert_bodies_or_refused(path: Path) -> None:
 
 @given(flips=flips, length=lengths, method=methods)
 @settings(max_examples=200)
-def test_a_damaged_file_is_refused_if_it_is_no_body(
+def test_a_damaged_file_is_rejected_unless_it_contains_bodies(
     damaged_file: Path, flips: Any, length: int | None, method: int
 ) -> None:
     damaged_file.write_bytes(damaged(bodies(method=method), flips, length))
-    assert_bodies_or_refused(damaged_file)
+    assert_bodies_or_rejected(damaged_file)
 
 
 @given(name=st.sampled_from(["material", "phase_cycles"]), flips=flips, length=lengths)
 @settings(max_examples=200)
-def test_a_damaged_array_that_is_packed_well_is_refused_if_it_is_no_body(
+def test_a_damaged_array_in_an_intact_archive_is_rejected_unless_it_is_a_body(
     damaged_file: Path, name: str, flips: Any, length: int | None
 ) -> None:
     arrays = {"material": npy(SOLID), "phase_cycles": npy(ZERO)}
     damaged_file.write_bytes(bodies(**{**arrays, name: damaged(arrays[name], flips, length)}))
-    assert_bodies_or_refused(damaged_file)
+    assert_bodies_or_rejected(damaged_file)

@@ -1,4 +1,4 @@
-"""What is drawn of bodies of voxels."""
+"""Geometry of voxel bodies for figures and pages."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def named(geometry: Geometry) -> dict[str, GeometryPart]:
 
 
 def volume(part: GeometryPart, frame: int = 0) -> float:
-    """Of what the faces enclose (divergence theorem), in voxels: right only if all of them face outwards."""
+    """Return the enclosed volume in voxels (divergence theorem); correct only if all faces face outwards."""
     corners = part.vertices[frame][part.faces]
     areas = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]) / 2
     return float((corners.mean(axis=1) * areas).sum() / 3 / SIZE**3)
@@ -42,7 +42,7 @@ bodies = st.integers(0, 2**32 - 1).map(
 
 @settings(max_examples=25, deadline=None)
 @given(bodies.filter(lambda body: bool(np.any(body == 3))))
-def test_faces_enclose_the_volume_of_the_voxels_with_those_of_the_others(body: NDArray[np.uint8]) -> None:
+def test_the_faces_of_all_parts_enclose_the_volume_of_the_voxels(body: NDArray[np.uint8]) -> None:
     geometry = Vox().geometry(design(body), 1)
     total = sum(volume(part) for part in geometry.parts)
     assert total == pytest.approx(np.count_nonzero(body))
@@ -54,11 +54,11 @@ def test_each_exposed_face_is_drawn_once(body: NDArray[np.uint8]) -> None:
     present = np.pad(body != 0, 1).astype(int)
     exposed = sum(int(np.abs(np.diff(present, axis=axis)).sum()) for axis in range(3))
     faces = [part.vertices[0][part.faces].mean(axis=1) for part in Vox().geometry(design(body), 1).parts]
-    centres = np.concatenate(faces)
-    assert len(centres) == exposed == len(np.unique(centres.round(9), axis=0))
+    centers = np.concatenate(faces)
+    assert len(centers) == exposed == len(np.unique(centers.round(9), axis=0))
 
 
-def test_the_enclosure_is_a_part_of_its_own_and_can_be_seen_through() -> None:
+def test_the_enclosure_is_a_separate_translucent_part() -> None:
     parts = named(Vox().geometry(design(bar()), 1))
     assert list(parts) == ["contractile", "enclosure"]
     assert parts["contractile"].opacity == 1.0
@@ -70,16 +70,16 @@ def test_the_enclosure_is_a_part_of_its_own_and_can_be_seen_through() -> None:
 def test_a_layer_with_a_hole_encloses_nothing() -> None:
     body = bar()
     body[0, 0, 0] = 0
-    assert list(named(Vox().geometry(design(body), 1))) == ["passive"]  # which hides the contractile ones
+    assert list(named(Vox().geometry(design(body), 1))) == ["passive"]  # hides the contractile voxels
 
 
-def test_what_is_contractile_is_red_and_what_is_not_is_blue() -> None:
+def test_contractile_parts_are_red_and_passive_ones_blue() -> None:
     body = np.array([[[1]], [[3]]], np.uint8)
-    colours = {name: part.colour for name, part in named(Vox().geometry(design(body), 1)).items()}
-    assert colours == {"passive": "#0077BB", "contractile": "#CC3311"}
+    colors = {name: part.colour for name, part in named(Vox().geometry(design(body), 1)).items()}
+    assert colors == {"passive": "#0077BB", "contractile": "#CC3311"}
 
 
-def test_materials_of_a_palette_have_colours_of_their_own() -> None:
+def test_materials_of_a_palette_have_distinct_colors() -> None:
     palette = tuple(
         PaletteMaterial(code, 5e6, 0.35, 1e6, expansion, name=name)
         for code, expansion, name in ((1, 0.0, "soft"), (2, 0.0, ""), (3, 0.01, "muscle"), (4, -0.01, ""))
@@ -93,17 +93,17 @@ def test_materials_of_a_palette_have_colours_of_their_own() -> None:
 def test_frames_are_spread_from_the_start_to_the_end() -> None:
     geometry = Vox().geometry(design(bar()), 5)
     step = geometry.times[-1] / 22  # the paper's 22 steps
-    assert (geometry.times / step).round(9).tolist() == [0, 6, 11, 16, 22]  # halves go to the even one
+    assert (geometry.times / step).round(9).tolist() == [0, 6, 11, 16, 22]  # halves are rounded to even
     assert len(Vox().geometry(design(bar()), 100).times) == 23
 
 
-def test_the_tracks_are_those_of_the_simulation() -> None:
+def test_the_tracks_come_from_the_simulation() -> None:
     geometry = Vox().geometry(design(bar()), 3)
     assert set(geometry.tracks) == {"tip", "face", "body"}
     assert geometry.tracks["tip"][0] == pytest.approx((np.array([6, 4, 4]) - 0.5) * SIZE)
 
 
-def test_what_is_clamped_stays_and_what_swells_grows() -> None:
+def test_clamped_faces_do_not_move_and_contractile_parts_grow() -> None:
     geometry = Vox().geometry(design(bar()), 3)
     parts = named(geometry)
     enclosure = parts["enclosure"].vertices
@@ -123,22 +123,23 @@ def test_corners_move_by_the_mean_of_their_voxels() -> None:
     assert moved[between] == pytest.approx(np.broadcast_to(shift / 2, (4, 3)))
 
 
-def test_a_simulation_that_diverges_is_drawn_up_to_there() -> None:
+def test_a_diverging_simulation_is_drawn_up_to_the_divergence() -> None:
     geometry = Vox(largest_strain=1e-3).geometry(design(bar()), 23)
     assert 1 < len(geometry.times) < 23
     assert all(np.isfinite(part.vertices).all() for part in geometry.parts)
 
 
-def test_a_body_without_a_voxel_is_refused() -> None:
-    with pytest.raises(InputError, match="no voxel"):
+def test_a_body_without_voxels_is_rejected() -> None:
+    with pytest.raises(InputError, match="no voxels") as caught:
         Vox().geometry(design(np.zeros((2, 2, 2), np.uint8)), 1)
+    assert caught.value.key == "morphology"
 
 
-def test_an_unknown_code_is_refused() -> None:
+def test_an_unknown_code_is_rejected() -> None:
     with pytest.raises(InputError, match="code 7"):
         Vox().geometry(design(np.full((2, 2, 2), 7, np.uint8)), 1)
 
 
-def test_no_frame_is_refused() -> None:
-    with pytest.raises(ValueError, match="1 frame or more, found 0"):
+def test_a_geometry_without_frames_is_rejected() -> None:
+    with pytest.raises(ValueError, match="found 0"):
         Vox().geometry(design(bar()), 0)

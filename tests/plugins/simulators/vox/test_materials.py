@@ -1,4 +1,4 @@
-"""What voxels are made of: one material, and a palette of them."""
+"""Materials of voxels, and palettes."""
 
 from __future__ import annotations
 
@@ -12,39 +12,41 @@ from bars import soft
 from hypothesis import given, strategies as st
 
 from evoframe_simulators import Vox
-from evoframe_simulators.vox.materials import described, single, solver_palette
+from evoframe_simulators.vox.materials import describe_codes, round_to_single, solver_palette
 from evoframe_simulators.vox.settings import VoxSettings, materials_of
 
 
-def test_one_code_for_two_materials_is_refused() -> None:
-    with pytest.raises(ValueError, match="expected one material for each code, found 2 for 4"):
+def test_two_materials_with_one_code_are_rejected() -> None:
+    with pytest.raises(ValueError, match="found 2 with 4"):
         Vox(palette=(soft(4), soft(2), soft(4)))
 
 
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"code": 0}, "'code' must be >= 1"),
-        ({"code": 256}, "'code' must be <= 255"),
-        ({"youngs_modulus": 0.0}, "'youngs_modulus' must be between 1e-6 and 1e18 Pa: 0.0"),
-        ({"poisson_ratio": 0.5}, "'poisson_ratio' must be at least 0 and below 0.5: 0.5"),
-        ({"poisson_ratio": -0.1}, "'poisson_ratio' must be at least 0 and below 0.5: -0.1"),
-        ({"density": -1.0}, "'density' must be between 1e-6 and 1e18 kg/m3: -1.0"),
-        ({"expansion_coefficient": math.inf}, "'expansion_coefficient' must be finite: inf"),
-        ({"static_friction": -1.0}, "'static_friction' must be finite and not negative: -1.0"),
-        ({"dynamic_friction": math.nan}, "'dynamic_friction' must be finite and not negative: nan"),
-        ({"name": "two\nlines"}, "'name' must be one line of printable characters"),
+        ({"code": 0}, "'code'.*>= 1"),
+        ({"code": 256}, "'code'.*<= 255"),
+        ({"youngs_modulus": 0.0}, "'youngs_modulus'.*1e-6 and 1e18 Pa: 0.0"),
+        ({"poisson_ratio": 0.5}, "'poisson_ratio'.*below 0.5: 0.5"),
+        ({"poisson_ratio": -0.1}, "'poisson_ratio'.*below 0.5: -0.1"),
+        ({"density": -1.0}, "'density'.*1e-6 and 1e18 kg/m3: -1.0"),
+        ({"expansion_coefficient": math.inf}, "'expansion_coefficient'.*: inf"),
+        ({"static_friction": -1.0}, "'static_friction'.*: -1.0"),
+        ({"dynamic_friction": math.nan}, "'dynamic_friction'.*: nan"),
+        ({"name": "two\nlines"}, "'name'.*printable"),
     ],
 )
-def test_a_value_out_of_range_is_refused_by_name(changed: dict[str, Any], message: str) -> None:
+def test_the_error_for_a_value_out_of_range_names_option_and_value(
+    changed: dict[str, Any], message: str
+) -> None:
     with pytest.raises(ValueError, match=message):
         attrs.evolve(soft(1), **changed)
 
 
-def test_codes_are_described_in_their_order_with_the_names_that_there_are() -> None:
-    assert described(materials_of(VoxSettings())) == "0 empty, 1 passive, 3 contractile"
-    assert described({9: soft(9), 2: soft(2, name="gel")}) == "0 empty, 2 gel, 9"
-    assert described({}) == "0 empty"
+def test_codes_are_listed_in_ascending_order_with_their_names() -> None:
+    assert describe_codes(materials_of(VoxSettings())) == "0 empty, 1 passive, 3 contractile"
+    assert describe_codes({9: soft(9), 2: soft(2, name="gel")}) == "0 empty, 2 gel, 9"
+    assert describe_codes({}) == "0 empty"
 
 
 def test_the_solver_is_given_every_value() -> None:
@@ -56,11 +58,11 @@ def test_the_solver_is_given_every_value() -> None:
 
 @given(st.floats(allow_nan=False))
 def test_single_precision_rounds_once(value: float) -> None:
-    rounded = single(value)
-    assert single(rounded) == rounded
+    rounded = round_to_single(value)
+    assert round_to_single(rounded) == rounded
     if abs(value) < 1e38:
         assert abs(rounded - value) <= np.spacing(np.float32(abs(rounded))) / 2
 
 
-def test_what_single_precision_cannot_hold_is_infinite() -> None:
-    assert single(1e300) == np.inf
+def test_numbers_beyond_single_precision_become_infinite() -> None:
+    assert round_to_single(1e300) == np.inf

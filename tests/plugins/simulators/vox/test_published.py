@@ -1,4 +1,4 @@
-"""The published bodies, and the random controllers that bodies are measured with."""
+"""Published bodies, and random controllers for robustness."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from evoframe_simulators import Vox
 PAPER = Path(__file__).parents[3] / "data" / "paper_preset.npz"
 
 
-def test_they_are_those_that_the_authors_engine_was_given() -> None:
+def test_bodies_equal_the_inputs_of_the_authors_engine() -> None:
     with np.load(PAPER) as data:
         given = {
             label.removeprefix("published ").removesuffix(", zero offsets"): material
@@ -29,8 +29,8 @@ def test_they_are_those_that_the_authors_engine_was_given() -> None:
         assert not design.roles["controller"].any()
 
 
-def test_their_medians_under_random_offsets_are_those_of_the_paper() -> None:
-    """paper.md, "The simulation of one pair": measured there with 60 other offset sets."""
+def test_medians_with_random_offsets_agree_with_the_paper() -> None:
+    """Compare with docs/experiment.md, "The simulation of a pair", which used 60 other sets of offsets."""
     found = measure_robustness(published=True, controllers=60)
     medians = dict(
         zip([body.label for body in found.setting.bodies], np.median(found.scores, axis=0), strict=True)
@@ -42,7 +42,7 @@ def test_their_medians_under_random_offsets_are_those_of_the_paper() -> None:
 
 
 @given(st.integers(0, 2**32), st.tuples(*[st.integers(1, 6)] * 3))
-def test_offsets_lie_within_two_turns_for_every_cell(seed: int, canvas: tuple[int, int, int]) -> None:
+def test_offsets_of_every_cell_are_within_two_cycles(seed: int, canvas: tuple[int, int, int]) -> None:
     body = Design({"morphology": np.zeros(canvas, np.uint8), "controller": np.zeros(canvas)})
     full = body.with_role("morphology", np.full(canvas, 3, np.uint8))
     drawn, same = (
@@ -55,7 +55,7 @@ def test_offsets_lie_within_two_turns_for_every_cell(seed: int, canvas: tuple[in
     assert np.array_equal(drawn, same)
 
 
-def test_offsets_fill_their_range_evenly() -> None:
+def test_offsets_are_uniformly_distributed() -> None:
     canvas = (20, 20, 20)
     body = Design({"morphology": np.ones(canvas, np.uint8), "controller": np.zeros(canvas)})
     offsets = Vox().random_controller(body, np.random.default_rng(1)).roles["controller"]
@@ -63,7 +63,8 @@ def test_offsets_fill_their_range_evenly() -> None:
     assert counts == pytest.approx(np.full(8, 1000), abs=150)
 
 
-def test_what_is_no_body_is_given_no_controller() -> None:
+def test_a_design_without_a_body_is_rejected() -> None:
     flat = Design({"morphology": np.ones((3, 3), np.uint8), "controller": np.zeros((3, 3))})
-    with pytest.raises(InputError, match="expected uint8"):
+    with pytest.raises(InputError, match=r"uint8\[3, 3\]") as caught:
         Vox().random_controller(flat, np.random.default_rng(1))
+    assert caught.value.key == "morphology"

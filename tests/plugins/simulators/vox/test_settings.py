@@ -1,4 +1,4 @@
-"""The options of `vox`: what they are in a configuration, and what is refused where."""
+"""Options of `vox` in configurations, and errors in them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STEEL = "code=2, youngs_modulus=5e7, poisson_ratio=0.3, density=1e6, static_fric
 
 
 class TestConfiguration:
-    def test_the_preset_writes_every_option_out_with_its_default(self) -> None:
+    def test_the_preset_contains_every_option_with_its_default(self) -> None:
         assert load_config("paper").simulator.component == Vox()
         text = files("evoframe").joinpath("config", "presets", "paper.toml").read_text(encoding="utf-8")
         written = tomllib.loads(text)["simulator"]
@@ -39,45 +39,45 @@ class TestConfiguration:
     @pytest.mark.parametrize(
         ("override", "messages"),
         [
-            (f"palette=[{{{STEEL}}}]", ["simulator.palette[0].expansion_coefficient", "is missing"]),
-            ("palette=[{code=0}]", ["simulator.palette[0].code: must be >= 1, found 0"]),
-            ("palette=[{code=256}]", ["simulator.palette[0].code: must be <= 255, found 256"]),
+            (f"palette=[{{{STEEL}}}]", ["simulator.palette[0].expansion_coefficient", "missing"]),
+            ("palette=[{code=0}]", ["simulator.palette[0].code: ", ">= 1, found 0"]),
+            ("palette=[{code=256}]", ["simulator.palette[0].code: ", "<= 255, found 256"]),
             (
                 "palette=[{density=-1}]",
-                ["simulator.palette[0].density: must be between 1e-6 and 1e18 kg/m3, found -1.0"],
+                ["simulator.palette[0].density: ", "1e-6 and 1e18 kg/m3, found -1.0"],
             ),
-            ("palette=[{colour=1}]", ["simulator.palette[0].colour: unknown option"]),
-            ("palette=[{name='a\\u0007'}]".replace("'", '"'), ["must be one line of printable characters"]),
-            ("fixed=[{size=[1, -1, 1]}]", ["simulator.fixed[0].size: must be >= 0.0, found -1.0"]),
-            ("fixed=[{size=[1, 1]}]", ["simulator.fixed[0].size: expected a list of 3"]),
+            ("palette=[{colour=1}]", ["simulator.palette[0].colour: "]),
+            ("palette=[{name='a\\u0007'}]".replace("'", '"'), ["simulator.palette[0].name: ", "printable"]),
+            ("fixed=[{size=[1, -1, 1]}]", ["simulator.fixed[0].size: ", ">= 0.0, found -1.0"]),
+            ("fixed=[{size=[1, 1]}]", ["simulator.fixed[0].size: ", "list of 3"]),
             (
                 "fixed=[{degrees_of_freedom=['x', 'w']}]",
-                ["simulator.fixed[0].degrees_of_freedom[1]: expected one of", 'found "w"'],
+                ["simulator.fixed[0].degrees_of_freedom[1]: ", 'found "w"'],
             ),
             (
                 "fixed=[{degrees_of_freedom=['x', 'x']}]",
-                ["simulator.fixed[0].degrees_of_freedom: must have each"],
+                ["simulator.fixed[0].degrees_of_freedom: ", "duplicates"],
             ),
-            ("collision_envelope=2.5", ["simulator.collision_envelope: must be between 1 and 2, found 2.5"]),
-            ("collision_horizon=0.5", ["simulator.collision_horizon: must be between 1 and 4, found 0.5"]),
-            ("floor_slope=90", ["simulator.floor_slope: must be between -89 and 89 degrees, found 90.0"]),
-            ("substeps=0", ["simulator.substeps: must be between 1 and 1000, found 0"]),
-            ("start_time=-1", ["simulator.start_time: must be between 0 and 1e9 s, found -1.0"]),
-            ("duration=1e10", ["simulator.duration: must be above 0 and at most 1e9 s, found 10000000000.0"]),
-            ("collision_damping=-1", ["simulator.collision_damping: must be finite and not negative, found"]),
-            ("poisson_ratio=0.5", ["simulator.poisson_ratio: must be at least 0 and below 0.5, found 0.5"]),
-            ("step_limit=0", ["simulator.step_limit: must be at least 1, found 0"]),
-            (f"step_limit={2**53 + 1}", [f"simulator.step_limit: must be <= {2**53}, found {2**53 + 1}"]),
-            ("frequency=0", ["simulator.frequency: must be > 0.0, found 0.0"]),
+            ("collision_envelope=2.5", ["simulator.collision_envelope: ", "1 and 2, found 2.5"]),
+            ("collision_horizon=0.5", ["simulator.collision_horizon: ", "1 and 4, found 0.5"]),
+            ("floor_slope=90", ["simulator.floor_slope: ", "-89 and 89 degrees, found 90.0"]),
+            ("substeps=0", ["simulator.substeps: ", "1 and 1000, found 0"]),
+            ("start_time=-1", ["simulator.start_time: ", "0 and 1e9 s, found -1.0"]),
+            ("duration=1e10", ["simulator.duration: ", "1e9 s, found 10000000000.0"]),
+            ("collision_damping=-1", ["simulator.collision_damping: ", "found -1.0"]),
+            ("poisson_ratio=0.5", ["simulator.poisson_ratio: ", "0.5, found 0.5"]),
+            ("step_limit=0", ["simulator.step_limit: ", "at least 1, found 0"]),
+            (f"step_limit={2**53 + 1}", ["simulator.step_limit: ", f"<= {2**53}, found {2**53 + 1}"]),
+            ("frequency=0", ["simulator.frequency: ", "> 0.0, found 0.0"]),
             (
                 "step_limit=20",
-                ["simulator: duration = 0.07 s takes 22 steps, more than step_limit = 20; simulate"],
+                ["simulator: ", "duration = 0.07 s ", "22 steps", "step_limit = 20"],
             ),
-            ("frequency=1e-60", ["simulator: ", "period must be"]),
-            ("temperature_amplitude=1e60", ["simulator: ", "temperature_amplitude must be"]),
+            ("frequency=1e-60", ["simulator: ", "period"]),
+            ("temperature_amplitude=1e60", ["simulator: ", "temperature_amplitude"]),
         ],
     )
-    def test_what_is_wrong_is_named_with_its_key(self, override: str, messages: list[str]) -> None:
+    def test_errors_contain_key_and_values(self, override: str, messages: list[str]) -> None:
         with pytest.raises(ConfigurationError) as caught:
             load_config("paper", overrides=[f"simulator.{override}"])
         for message in messages:
@@ -85,7 +85,7 @@ class TestConfiguration:
 
 
 class TestPalette:
-    def test_it_stands_for_what_a_preset_says_of_the_built_in_materials(self) -> None:
+    def test_it_replaces_the_built_in_materials_of_a_preset(self) -> None:
         assert materials_of(Vox(palette=(soft(1),), density=1000.0)) == {1: soft(1)}
 
     def test_a_limit_of_steps_that_suffices_is_accepted(self) -> None:
@@ -100,7 +100,7 @@ class TestValue:
         )
         assert own == inherited
 
-    def test_settings_may_be_beyond_what_the_solver_can_do_and_a_simulator_may_not(self) -> None:
+    def test_only_the_simulator_rejects_settings_that_the_solver_rejects(self) -> None:
         assert VoxSettings(frequency=1e-60).frequency == 1e-60
         with pytest.raises(ValueError, match="period"):
             Vox(frequency=1e-60)
@@ -108,11 +108,11 @@ class TestValue:
     def test_equal_settings_have_one_hash(self) -> None:
         assert hash(VoxSettings(frequency=2.0)) == hash(VoxSettings(frequency=2.0))
         assert VoxSettings(frequency=2.0) != VoxSettings()
-        assert hash(pickle.loads(pickle.dumps(Vox()))) == hash(Vox())  # noqa: S301 - as workers are sent it
+        assert hash(pickle.loads(pickle.dumps(Vox()))) == hash(Vox())  # noqa: S301 - workers receive it pickled
 
 
 class TestMaterials:
-    def test_the_built_in_ones_differ_in_their_expansion_only(self) -> None:
+    def test_the_built_in_materials_differ_only_in_expansion(self) -> None:
         passive, contractile = materials_of(VoxSettings(density=7.0)).values()
         assert (passive.code, passive.name, contractile.code, contractile.name) == (
             *(1, "passive"),
@@ -121,7 +121,7 @@ class TestMaterials:
         assert passive.expansion_coefficient == 0.0
         assert attrs.evolve(contractile, code=1, name="passive", expansion_coefficient=0.0) == passive
 
-    def test_those_of_a_palette_are_found_by_their_code(self) -> None:
+    def test_materials_of_a_palette_are_found_by_code(self) -> None:
         assert materials_of(VoxSettings(palette=(soft(9), soft(2)))) == {9: soft(9), 2: soft(2)}
 
 
@@ -136,7 +136,7 @@ class TestDerived:
         assert from_radians == offset / math.tau
 
     @given(base=st.floats(-1e3, 1e3), highest=st.floats(-1e3, 1e3), frequency=st.floats(1e-3, 1e3))
-    def test_swing_and_period_are_of_single_precision(
+    def test_amplitude_and_period_have_single_precision(
         self, base: float, highest: float, frequency: float
     ) -> None:
         settings = VoxSettings(temperature_base=base, temperature_amplitude=highest, frequency=frequency)

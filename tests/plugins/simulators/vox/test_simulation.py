@@ -1,7 +1,8 @@
-"""Batches of designs: each as if it were alone, whatever the others are."""
+"""Simulation of batches of designs: the same outcomes as one design at a time."""
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ codes = st.lists(st.sampled_from([0, 1, 3]), min_size=1, max_size=4)
 
 @settings(max_examples=25)
 @given(rows=st.lists(codes, max_size=5))
-def test_a_batch_of_many_canvases_is_its_members_in_order(rows: list[list[int]]) -> None:
+def test_a_batch_with_many_canvases_has_the_outcomes_of_its_designs_in_order(rows: list[list[int]]) -> None:
     designs, record = [bar(*row) for row in rows], Record(("tip", "voxels"), every=0.01)
     together = simulate(VoxSettings(), designs, record)
     alone = [simulate(VoxSettings(), [design], record)[0] for design in designs]
@@ -29,12 +30,12 @@ def test_a_batch_of_many_canvases_is_its_members_in_order(rows: list[list[int]])
     assert all(same_outcome(one, other) for one, other in zip(together, alone, strict=True))
 
 
-def test_settings_simulate_as_the_simulator_that_has_them() -> None:
+def test_settings_and_a_simulator_with_these_settings_agree() -> None:
     [own], [offered] = simulate(VoxSettings(), [bar(1, 3)], PAPER), Vox().simulate([bar(1, 3)], PAPER)
     assert same_outcome(own, offered)
 
 
-def test_a_palette_may_be_the_built_in_materials() -> None:
+def test_a_palette_can_reproduce_the_built_in_materials() -> None:
     palette = (soft(1), soft(3, expansion_coefficient=0.01))
     record = Record(("tip", "energy"))
     [own], [built_in] = (v.simulate([bar(1, 3, 3)], record) for v in (Vox(palette=palette), Vox()))
@@ -45,8 +46,9 @@ def test_a_palette_may_be_the_built_in_materials() -> None:
 def test_only_the_codes_of_a_palette_are_simulated() -> None:
     vox = Vox(palette=(soft(200), soft(7)))
     assert vox.simulate([bar(200, 7)], Record(("tip",)))[0].diverged_at is None
-    with pytest.raises(InputError, match=r"^material has the code 1; codes: 0 empty, 7, 200$"):
+    with pytest.raises(InputError, match=r"code 1; .* 0 empty, 7, 200$") as caught:
         vox.simulate([bar(1, 7)], Record(("tip",)))
+    assert caught.value.key == "material"
 
 
 def test_bodies_of_one_batch_may_have_different_time_steps() -> None:
@@ -61,7 +63,7 @@ def test_bodies_of_one_batch_may_have_different_time_steps() -> None:
             assert (alone.tracks["tip"] == outcome.tracks["tip"]).all()
 
 
-def test_an_empty_body_counts_as_diverged_before_the_first_step() -> None:
+def test_an_empty_body_counts_as_diverged_at_step_0() -> None:
     empty = Design({"morphology": np.zeros((4, 3, 3), np.uint8), "controller": np.zeros((4, 3, 3))})
     [outcome] = Vox().simulate([empty], PAPER)
     assert outcome.diverged_at == 0
@@ -69,22 +71,30 @@ def test_an_empty_body_counts_as_diverged_before_the_first_step() -> None:
 
 
 @pytest.mark.parametrize(
-    ("roles", "message"),
+    ("roles", "key", "problem"),
     [
         (
             {"morphology": np.ones((2, 2), np.uint8)},
-            r"morphology is uint8\[2, 2\]; expected uint8\[X, Y, Z\]",
+            "morphology",
+            r" uint8\[2, 2\], .* uint8\[X, Y, Z\]",
         ),
-        ({"morphology": np.ones((4, 3, 3))}, "morphology is float64"),
+        ({"morphology": np.ones((4, 3, 3))}, "morphology", "float64"),
         (
             {"controller": np.zeros((3, 3, 3))},
-            r"controller is float64\[3, 3, 3\]; expected float64\[4, 3, 3\]",
+            "controller",
+            r" float64\[3, 3, 3\], .* float64\[4, 3, 3\]",
         ),
-        ({"morphology": np.full((4, 3, 3), 7, np.uint8)}, "material has the code 7; codes: 0 empty"),
-        ({"morphology": np.full((4, 3, 3), 3, np.uint8), "controller": np.full((4, 3, 3), np.nan)}, "phase"),
+        ({"morphology": np.full((4, 3, 3), 7, np.uint8)}, "material", "code 7; .* 0 empty"),
+        (
+            {"morphology": np.full((4, 3, 3), 3, np.uint8), "controller": np.full((4, 3, 3), np.nan)},
+            "",
+            "phase",
+        ),
     ],
 )
-def test_what_is_no_design_is_refused(roles: dict[str, Any], message: str) -> None:
+def test_an_invalid_design_is_rejected(roles: dict[str, Any], key: str, problem: str) -> None:
     body = Design({"morphology": np.ones((4, 3, 3), np.uint8), "controller": np.ones((4, 3, 3))})
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError) as caught:
         Vox().simulate([Design({**body.roles, **roles})], PAPER)
+    assert caught.value.key == key
+    assert re.search(problem, caught.value.problem)

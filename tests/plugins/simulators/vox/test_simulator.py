@@ -1,4 +1,4 @@
-"""The simulator `vox`: the laws of simulators, the reference data, and what its key leaves out."""
+"""The simulator `vox`: contract of simulators, reference data, and keys of designs."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class TestVox(SimulatorContract):
 
 
 class TestWalkingVox(TestVox):
-    """With all that surrounds a free body, contacts that are right, and a divided time step."""
+    """Options for a free body: environment, physical contacts and substeps."""
 
     component = Vox(
         duration=0.05,
@@ -84,7 +84,7 @@ class TestWalkingVox(TestVox):
 
 
 class TestUnstableVox(TestVox):
-    """With a damping that no time step can follow."""
+    """Options with damping that is too strong for the time step."""
 
     component = Vox(duration=0.05, bond_damping=1e4)
 
@@ -99,7 +99,7 @@ class TestUnstableVox(TestVox):
 
 
 class TestPaper:
-    def test_displacements_are_those_of_the_authors_engine(self, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_displacements_agree_with_the_authors_engine(self, capsys: pytest.CaptureFixture[str]) -> None:
         outcomes = Vox().simulate(designs(), PAPER)
         displacement = [outcome.tracks["tip"][1, 2] - outcome.tracks["tip"][0, 2] for outcome in outcomes]
         worst = np.abs(np.array(displacement) - golden()["displacement"]).max()
@@ -107,7 +107,7 @@ class TestPaper:
             print(f"\nvox against the authors' engine, 36 bodies: displacement within {worst:.1e} m", end=" ")  # noqa: T201
         assert worst < 1e-9
 
-    def test_without_contraction_the_published_bodies_move_all_the_same(self) -> None:
+    def test_without_contraction_the_published_bodies_move_as_in_the_engine(self) -> None:
         still = Vox(expansion_coefficient=0.0)
         outcomes = still.simulate([designs()[i] for i in (0, 3, 6)], PAPER)
         displacement = [outcome.tracks["tip"][1, 2] - outcome.tracks["tip"][0, 2] for outcome in outcomes]
@@ -123,7 +123,7 @@ class TestKey:
     def key(self, vox: Vox, body: Design, **changed: Any) -> bytes:
         return vox.key(Design({**body.roles, **changed}), PAPER)
 
-    def test_a_phase_counts_only_where_the_voxel_contracts(self) -> None:
+    def test_the_key_depends_on_phases_of_contractile_voxels_only(self) -> None:
         body = small()
         material, phase = body.roles["morphology"], body.roles["controller"]
         idle = np.where(material == 3, phase, 0.5)
@@ -131,7 +131,7 @@ class TestKey:
         assert self.key(Vox(), body, controller=idle) == self.key(Vox(), body)
         assert self.key(Vox(), body, controller=acting) != self.key(Vox(), body)
 
-    def test_a_phase_counts_in_single_precision_as_the_solver_reads_it(self) -> None:
+    def test_the_key_depends_on_phases_in_single_precision_like_the_solver(self) -> None:
         body = small()
         phase = body.roles["controller"]
         assert self.key(Vox(), body, controller=phase * (1 + 1e-12)) == self.key(Vox(), body)
@@ -139,11 +139,11 @@ class TestKey:
         zero = np.zeros(phase.shape)
         assert self.key(Vox(), body, controller=zero) == self.key(Vox(), body, controller=-zero)
 
-    def test_without_expansion_no_phase_counts(self) -> None:
+    def test_without_expansion_the_key_does_not_depend_on_phases(self) -> None:
         still = Vox(expansion_coefficient=0.0)
         assert self.key(still, small(), controller=np.zeros((4, 3, 3))) == self.key(still, small())
 
-    def test_a_phase_counts_where_the_material_expands_or_contracts(self) -> None:
+    def test_the_key_depends_on_phases_of_expanding_and_contracting_materials(self) -> None:
         vox = Vox(palette=(soft(1), soft(2, expansion_coefficient=-0.01), soft(3)))
         body = bar(1, 2, 3)
         keys = [
@@ -153,12 +153,12 @@ class TestKey:
         assert keys[0] == keys[2] == vox.key(body, Record(("tip",)))
         assert keys[1] != keys[0]
 
-    def test_without_an_amplitude_no_phase_counts(self) -> None:
+    def test_without_an_amplitude_the_key_does_not_depend_on_phases(self) -> None:
         vox = Vox(temperature_amplitude=25.0)
         turned = bar(3, 3).with_role("controller", np.ones((2, 1, 1)))
         assert vox.key(turned, Record(("tip",))) == vox.key(bar(3, 3), Record(("tip",)))
 
-    def test_the_shape_counts(self) -> None:
+    def test_the_key_depends_on_the_shape(self) -> None:
         body = small()
         turned = {role: array.reshape(3, 4, 3) for role, array in body.roles.items()}
         assert self.key(Vox(), Design(turned)) != self.key(Vox(), body)
@@ -173,26 +173,24 @@ def test_radians_are_cycles_times_two_pi() -> None:
     assert Vox(phase_unit="radians").key(radians, PAPER) == Vox().key(body, PAPER)
 
 
-def test_what_is_no_design_has_no_key() -> None:
-    with pytest.raises(InputError, match=r"morphology is uint8\[36\]; expected uint8\[X, Y, Z\]"):
+def test_an_invalid_design_has_no_key() -> None:
+    with pytest.raises(InputError, match=r" uint8\[36\], .* uint8\[X, Y, Z\]") as caught:
         Vox().key(Design({role: array.reshape(-1) for role, array in small().roles.items()}), PAPER)
+    assert caught.value.key == "morphology"
 
 
-def test_a_phase_beyond_single_precision_has_a_key_and_is_refused_by_the_solver() -> None:
+def test_a_phase_beyond_single_precision_has_a_key_and_is_rejected_by_the_solver() -> None:
     body = Design({**small().roles, "controller": np.full((4, 3, 3), 1e300)})
     assert Vox().key(body, PAPER)
-    with pytest.raises(InputError, match=r"within 1e6 cycles of 0$"):
+    with pytest.raises(InputError, match=r"1e6 cycles"):
         Vox().simulate([body], PAPER)
 
 
-def test_a_sample_after_the_end_is_refused_with_the_numbers() -> None:
+def test_the_error_for_a_sample_after_the_end_contains_the_numbers() -> None:
     with pytest.raises(ConfigurationError) as caught:
         Vox(duration=0.03).check(PAPER)
-    assert str(caught.value) == (
-        "sample 5 of one every 0.01 s is never taken: "
-        "vox makes 10 steps in simulator.duration = 0.03 s, samples 0 to 2; "
-        "simulate longer, or set an objective that looks earlier or more often"
-    )
+    for data in ("sample 5 ", " 0.01 s", "simulator.duration = 0.03 s", " 10 steps", " 0 to 2;"):
+        assert data in str(caught.value)
 
 
 def lone(size: int = 2) -> Design:
@@ -202,11 +200,11 @@ def lone(size: int = 2) -> Design:
 
 
 class TestBodyWithoutBonds:
-    """Its time step is longer than that of others where a voxel is larger than 1 m."""
+    """Body whose time step exceeds that of other bodies if voxels are larger than 1 m."""
 
     vox = Vox(voxel_size=4.0, duration=10.0)
 
-    def test_makes_fewer_steps_than_others_if_a_voxel_is_large(self) -> None:
+    def test_has_fewer_steps_than_others_if_voxels_are_large(self) -> None:
         with_bond, without = self.vox.simulate([bar(1, 1), lone()], Record(("tip",)))
         assert len(without.steps) < len(with_bond.steps)
         assert without.diverged_at is None
@@ -216,17 +214,17 @@ class TestBodyWithoutBonds:
     def test_has_every_sample_that_is_accepted(self, vox: Vox, every: float) -> None:
         with pytest.raises(ConfigurationError) as caught:
             vox.check(Record(("tip",), every=every, samples=(10**9,)))
-        [last] = map(int, re.findall(r"samples 0 to (\d+);", str(caught.value)))
+        [last] = map(int, re.findall(r" 0 to (\d+);", str(caught.value)))
         record = Record(("tip",), every=every, samples=(last,))
         vox.check(record)
         for outcome in vox.simulate([bar(1, 1), lone(), lone(1)], record):
             assert len(outcome.steps) == 1
 
     def test_has_no_sample_after_its_own_end(self) -> None:
-        with pytest.raises(InputError, match=r"beyond the end of the simulation$"):
+        with pytest.raises(InputError, match="beyond"):
             self.vox.simulate([lone()], Record(("tip",), samples=(10**9,)))
 
 
-def test_a_long_duration_is_checked_at_once() -> None:
+def test_a_long_duration_is_checked_quickly() -> None:
     vox = Vox(duration=1e9, step_limit=2**53)
     vox.check(Record(("tip",), every=0.01, samples=(0, 10**10)))

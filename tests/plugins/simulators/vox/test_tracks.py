@@ -1,4 +1,4 @@
-"""What can be recorded of a simulation."""
+"""Tracks that a simulation can record."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hypothesis import given, strategies as st
 from evoframe import ConfigurationError, InputError, Record
 from evoframe_simulators import Vox
 from evoframe_simulators.vox.limits import MOST_RECORD_BYTES
-from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_room, shape_of
+from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_size, shape_of
 
 
 class TestTracks:
@@ -39,14 +39,14 @@ class TestTracks:
         assert (outcome.tracks["voxels"][:, 2, 0, 0] == outcome.tracks["tip"]).all()
         assert np.isnan(outcome.tracks["voxels"][:, 3]).all()
 
-    def test_unknown_ones_are_refused_with_what_there_is(self) -> None:
-        expected = "points: tip, face, body; further tracks: voxels, energy, strain, momentum$"
-        with pytest.raises(ConfigurationError, match=f"no track 'voxel'; {expected}"):
+    def test_the_error_for_an_unknown_track_names_the_available_ones(self) -> None:
+        expected = "tip, face, body; .* voxels, energy, strain, momentum$"
+        with pytest.raises(ConfigurationError, match=f"'voxel'; .* {expected}"):
             Vox().check(Record(("tip", "voxel")))
 
-    def test_a_record_that_no_memory_holds_is_refused(self) -> None:
+    def test_a_record_that_exceeds_the_memory_is_rejected(self) -> None:
         vox = Vox(duration=20_000.0, step_limit=10**8)
-        with pytest.raises(InputError, match=r"samples of voxels would take .* GiB for one body, at most 4"):
+        with pytest.raises(InputError, match=r" voxels .* GiB .* 4 GiB;"):
             vox.simulate([bar(*[1] * 200)], Record(("voxels",)))
 
     @pytest.mark.parametrize("record", [Record(("tip",)), Record(("tip",), every=0.01, samples=(0, 3))])
@@ -61,11 +61,11 @@ class TestTracks:
     canvas=st.tuples(*[st.integers(1, 300)] * 3),
     tracks=st.sets(st.sampled_from((*POINTS, *FURTHER)), min_size=1),
 )
-def test_the_largest_record_that_fits_is_accepted_and_one_sample_more_is_not(
+def test_the_largest_record_is_accepted_and_one_more_sample_is_rejected(
     canvas: tuple[int, int, int], tracks: set[str]
 ) -> None:
     sample = sum(8 * math.prod(shape_of(track, canvas)) for track in tracks)
     most = MOST_RECORD_BYTES // sample
-    check_room(tracks, canvas, most)
-    with pytest.raises(InputError, match=f"^{most + 1} samples of .* for one body, at most 4;"):
-        check_room(tracks, canvas, most + 1)
+    check_size(tracks, canvas, most)
+    with pytest.raises(InputError, match=f"^{most + 1} samples .* 4 GiB;"):
+        check_size(tracks, canvas, most + 1)

@@ -1,4 +1,4 @@
-"""The variants that `evoframe verify` compares a design with."""
+"""Variants to which `evoframe verify` compares a design."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def variants() -> list[Variant]:
     return Vox().variants(published(), PAPER)
 
 
-def test_there_are_the_five_of_the_paper_and_ten_draws(variants: list[Variant]) -> None:
+def test_variants_are_the_four_changes_and_ten_draws_of_jitter(variants: list[Variant]) -> None:
     assert [variant.name for variant in variants] == [*CHANGES, *[JITTERED] * 10]
 
 
@@ -64,12 +64,12 @@ def test_each_changes_one_thing(variants: list[Variant]) -> None:
     }
 
 
-def test_without_contraction_nothing_is_left_of_it(variants: list[Variant]) -> None:
+def test_without_contraction_only_passive_motion_remains(variants: list[Variant]) -> None:
     still = outcome(named(variants, "contraction off"))
     assert still.tracks["tip"][1, 2] - still.tracks["tip"][0, 2] == pytest.approx(0.0019527, abs=5e-8)
 
 
-def test_a_palette_is_switched_off_as_a_whole() -> None:
+def test_all_materials_of_a_palette_stop_contracting() -> None:
     vox = Vox(palette=(soft(1, expansion_coefficient=0.01), soft(2, expansion_coefficient=-0.01)))
     body = bar(1, 2).with_role("controller", np.ones((2, 1, 1)))
     still = named(vox.variants(body, PAPER), "contraction off").simulator
@@ -84,7 +84,7 @@ def test_half_the_time_step_has_the_same_instants(variants: list[Variant]) -> No
     assert (half.steps == 2 * whole.steps).all()
 
 
-def test_half_the_time_step_is_left_out_where_there_is_none() -> None:
+def test_half_the_time_step_is_omitted_if_it_cannot_be_divided() -> None:
     names = [variant.name for variant in Vox(substeps=501).variants(published(), PAPER)]
     assert "half the time step" not in names
     assert set(names) == {*CHANGES, JITTERED} - {"half the time step"}
@@ -107,7 +107,7 @@ def test_twice_the_duration_is_sampled_at_twice_the_instants(
     twice = outcome(named(vox.variants(body, record), "twice the duration"))
     last = (int(2 * duration / (k * once.times[-1] / once.steps[-1])) + 1) * k
     assert twice.steps.tolist() == [min(2 * step, last) for step in once.steps.tolist()]
-    assert max(2 * once.steps) - last <= k  # only the very last step may have no double
+    assert max(2 * once.steps) - last <= k  # only the very last step may lack its double
 
 
 def test_the_paper_is_sampled_at_exactly_twice_its_instants(variants: list[Variant]) -> None:
@@ -115,19 +115,19 @@ def test_the_paper_is_sampled_at_exactly_twice_its_instants(variants: list[Varia
     assert longer.steps.tolist() == [2, 42]
 
 
-def test_a_record_of_everything_stays_one() -> None:
+def test_a_record_of_all_samples_does_not_change() -> None:
     everything = Record(("tip",), every=0.01)
     assert named(Vox().variants(published(), everything), "twice the duration").record == everything
 
 
-def test_a_record_that_must_reach_a_time_stays_acceptable() -> None:
+def test_a_record_with_a_required_time_remains_acceptable() -> None:
     record = attrs.evolve(PAPER, until=0.02)
     Vox().check(record)
     variant = named(Vox().variants(published(), record), "twice the duration")
     variant.simulator.check(variant.record)
 
 
-def test_jitter_is_within_a_percent_and_the_same_each_time() -> None:
+def test_jitter_is_within_a_percent_and_reproducible() -> None:
     draws, repeated = (
         [v.design.roles["controller"] for v in Vox().variants(published(4), PAPER) if v.name == JITTERED]
         for _ in range(2)
@@ -148,16 +148,20 @@ def test_an_empty_body_has_variants_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("morphology", "message"),
-    [(np.ones(4, np.uint8), "morphology is uint8"), (np.full((2, 1, 1), 9, np.uint8), "material code")],
+    ("morphology", "key", "problem"),
+    [
+        (np.ones(4, np.uint8), "morphology", r"uint8\[4\]"),
+        (np.full((2, 1, 1), 9, np.uint8), "", "material code"),
+    ],
 )
-def test_what_is_no_design_has_none(morphology: Any, message: str) -> None:
+def test_an_invalid_design_has_no_variants(morphology: Any, key: str, problem: str) -> None:
     design = Design({"morphology": morphology, "controller": np.zeros(morphology.shape)})
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError, match=problem) as caught:
         Vox().variants(design, PAPER)
+    assert caught.value.key == key
 
 
-def test_changed_settings_are_of_the_class_that_was_given() -> None:
+def test_changed_settings_have_the_class_of_the_original() -> None:
     for kind in (VoxSettings, Vox):
         given = kind(frequency=2.0)
         found = [settings for _, settings, _, _ in changes(given, bar(1, 3), PAPER)]

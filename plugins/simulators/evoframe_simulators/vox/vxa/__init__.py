@@ -1,8 +1,8 @@
-"""VXA: files of VoxCAD and the old Voxelyze engine, as the fork ``reconfigurable_organisms`` reads them.
+"""VXA files of VoxCAD and the old Voxelyze engine, interpreted like the fork ``reconfigurable_organisms``.
 
-Evosoro's files are read as that fork would read them (see :mod:`.vxa.schema`). Of its own
-engines ``_voxcad`` caps the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, so that what is
-written here expands only in the fork and in ``_voxcad_land_water``.
+Files of evosoro are interpreted as in that fork (see :mod:`.vxa.schema`). Evosoro's engine ``_voxcad`` caps
+the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, so that exported bodies expand only in the
+fork and in evosoro's ``_voxcad_land_water``.
 """
 
 from evoframe_simulators.vox.vxa.file import VxaFile

@@ -1,4 +1,4 @@
-"""The regions of a VXA file in which voxels are held."""
+"""Regions of a VXA file in which voxels are clamped."""
 
 from __future__ import annotations
 
@@ -7,28 +7,28 @@ from collections.abc import Iterator
 from evoframe import InputError
 from evoframe_simulators.vox.regions import DEGREES_OF_FREEDOM, FixedRegion
 from evoframe_simulators.vox.vxa.cells import Lattice, as_engine_holds
-from evoframe_simulators.vox.vxa.document import shown
+from evoframe_simulators.vox.vxa.document import shorten
 from evoframe_simulators.vox.vxa.file import SHAPES
-from evoframe_simulators.vox.vxa.sections import Refusals, Section
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported
 
-__all__ = ["regions_in"]
+__all__ = ["read_regions"]
 
 _ALL = 2 ** len(DEGREES_OF_FREEDOM) - 1
 _OLDER = {"Fixed_Regions": "NumFixed", "Forced_Regions": "NumForced"}
 
 
-def regions_in(environment: Section, lattice: Lattice, refusals: Refusals) -> tuple[FixedRegion, ...]:
-    """Return the regions that hold cells, those of older files too; the others are inert and left out.
+def read_regions(environment: Section, lattice: Lattice, unsupported: Unsupported) -> tuple[FixedRegion, ...]:
+    """Return the regions that clamp cells, also those of older files; regions without effect are omitted.
 
-    Each holds the cells that it holds in the engine (see :mod:`~evoframe_simulators.vox.vxa.cells`).
+    Each clamps the same cells as in the engine (see :mod:`~evoframe_simulators.vox.vxa.cells`).
 
     Args:
-        environment: Has them in ``Boundary_Conditions``, or in ``Fixed_Regions`` and ``Forced_Regions``.
+        environment: Section with ``Boundary_Conditions``, or ``Fixed_Regions`` and ``Forced_Regions``.
         lattice: The cells.
-        refusals: Where regions are noted that are no boxes.
+        unsupported: Collects the regions that are not boxes.
 
     Raises:
-        InputError: Their number is not what is said, or one of them is none.
+        InputError: The number of regions differs from the declared one, or a region is invalid.
     """
     newer = environment.find("Boundary_Conditions")
     older = [(environment.find(tag), counted) for tag, counted in _OLDER.items()]
@@ -37,9 +37,9 @@ def regions_in(environment: Section, lattice: Lattice, refusals: Refusals) -> tu
     else:
         found = list(_listed(newer, "NumBCs"))
         for section, counted in older:
-            if section is not None and any(_listed(section, counted)):  # which the engine does not read then
-                refusals.add(section.place, "regions", "beside Boundary_Conditions")
-    boxes = [_box(region, refusals) for region in found]
+            if section is not None and any(_listed(section, counted)):  # the engine ignores these
+                unsupported.add(section.place, "regions", "beside Boundary_Conditions")
+    boxes = [_box(region, unsupported) for region in found]
     holding = [box for box in boxes if box is not None and box.degrees_of_freedom]
     held = [as_engine_holds(box, lattice) for box in holding]
     return tuple(box for box in held if box is not None)
@@ -48,16 +48,18 @@ def regions_in(environment: Section, lattice: Lattice, refusals: Refusals) -> tu
 def _listed(section: Section | None, counted: str) -> Iterator[Section]:
     if section is None:
         return
-    said, there = section.whole(counted, 0), section.count("FRegion")
-    if said != there:
-        raise InputError(f"{section.at(counted)} is {said}, but there are {there} FRegion")
+    declared, found = section.whole(counted, 0), section.count("FRegion")
+    if declared != found:
+        raise InputError(
+            f"found {declared}, expected {found}, the number of FRegion", key=section.at(counted)
+        )
     yield from section.all("FRegion")
 
 
-def _box(region: Section, refusals: Refusals) -> FixedRegion | None:
+def _box(region: Section, unsupported: Unsupported) -> FixedRegion | None:
     shape = region.whole("PrimType", most=len(SHAPES) - 1)
     if shape:
-        refusals.add(region.at("PrimType"), shown(str(shape)), f"{SHAPES[shape]}: vox knows boxes")
+        unsupported.add(region.at("PrimType"), shorten(str(shape)), f"{SHAPES[shape]}; vox supports boxes")
         return None
     x, y, z = (region.number(axis, 0.0) for axis in "XYZ")
     dx, dy, dz = (region.number(f"d{axis}", 0.0, least=0.0) for axis in "XYZ")

@@ -1,7 +1,7 @@
-"""Regions from the centre of a cell to that of another, which hold the same cells however it is computed.
+"""Regions with faces at the centers of cells, which clamp the same cells in the engine and in ``vox``.
 
-The engine compares the faces of a region with those of the cells in another arithmetic than ``vox``. Where
-a face lies between two cells, rounding may make the one hold a cell that the other does not.
+Engine and ``vox`` compare the faces of a region with those of cells in different arithmetic. If a face lies
+between two cells, rounding may include a cell in one of them but not in the other.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Lattice:
     """The cells of a file.
 
     Attributes:
-        canvas: Cells along x, y and z.
-        edge: Of a cell, m.
+        canvas: Number of cells along x, y and z.
+        edge: Edge of a cell, m.
     """
 
     canvas: tuple[int, int, int]
@@ -34,35 +34,35 @@ class Lattice:
 
 
 def as_vox_holds(region: FixedRegion, canvas: tuple[int, int, int]) -> FixedRegion | None:
-    """Return a region from centre to centre that holds what ``vox`` holds; nothing if that is no cell."""
+    """Return a center-to-center region with the cells that ``vox`` clamps; ``None`` if there are none."""
     axes = zip(region.origin, region.size, canvas, strict=True)
     held = [np.flatnonzero(overlapping(*span)).tolist() for span in axes]
     spans = [(cells[0], cells[-1]) if cells else None for cells in held]
-    return _from_centre_to_centre(region, spans, canvas)
+    return _from_center_to_center(region, spans, canvas)
 
 
 def as_engine_holds(region: FixedRegion, lattice: Lattice) -> FixedRegion | None:
-    """Return a region from centre to centre that holds what the engine holds; nothing if that is no cell."""
+    """Return a center-to-center region with the cells that the engine clamps; ``None`` if there are none."""
     axes = zip(region.origin, region.size, lattice.canvas, strict=True)
     spans = [_held_by_engine(*span, lattice.edge) for span in axes]
-    return _from_centre_to_centre(region, spans, lattice.canvas)
+    return _from_center_to_center(region, spans, lattice.canvas)
 
 
 def _held_by_engine(start: float, length: float, cells: int, edge: float) -> _Span:
-    """Return the cells whose centres, moved by half an edge either way, are beyond the region's faces."""
+    """Return the cells whose upper face is beyond the region's start and lower face before its end."""
     whole = edge * cells
     half = edge / 2 / whole
 
-    def centre(cell: int) -> float:
+    def center(cell: int) -> float:
         return edge * (cell + 0.5) / whole
 
-    # Rounded as they are, the faces ascend; so there is no need to look at all of the cells.
-    first = bisect_right(range(cells), start, key=lambda cell: centre(cell) + half)
-    past = bisect_left(range(cells), start + length, key=lambda cell: centre(cell) - half)
+    # The faces ascend in spite of rounding, so a binary search finds the cells.
+    first = bisect_right(range(cells), start, key=lambda cell: center(cell) + half)
+    past = bisect_left(range(cells), start + length, key=lambda cell: center(cell) - half)
     return (first, past - 1) if first < past else None
 
 
-def _from_centre_to_centre(
+def _from_center_to_center(
     region: FixedRegion, spans: Sequence[_Span], canvas: tuple[int, int, int]
 ) -> FixedRegion | None:
     held = [span for span in spans if span is not None]

@@ -1,4 +1,4 @@
-"""Every tag of a file against the schema: what vox does not simulate is named, never ignored."""
+"""Check of all tags of a file against the schema: unsupported features are reported, never ignored."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from collections.abc import Collection, Mapping
 
 from lxml import etree
 
-from evoframe_simulators.vox.vxa.document import shown
+from evoframe_simulators.vox.vxa.document import shorten
 from evoframe_simulators.vox.vxa.schema import VXA, Role, Schema
-from evoframe_simulators.vox.vxa.sections import Refusals, Section, number_in
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported, parse_number
 
-__all__ = ["refuse_the_unknown"]
+__all__ = ["collect_unsupported"]
 
 _OFF_WORDS = ("", "false")
 _MATERIAL = "VXC/Palette/Material"
 
 
-def refuse_the_unknown(
-    section: Section, used: Collection[int], refusals: Refusals, schema: Schema = VXA
+def collect_unsupported(
+    section: Section, used: Collection[int], unsupported: Unsupported, schema: Schema = VXA
 ) -> None:
-    """Note every tag of a file that asks for more than vox does (see :mod:`.vxa.schema`).
+    """Collect all tags of a file that enable features that vox does not simulate (see :mod:`.vxa.schema`).
 
     Args:
         section: The file, or a section of it.
-        used: The positions in the palette, from 1, of the materials that voxels have; others are passed by.
-        refusals: Where it is noted; equal names are numbered where there may be several.
-        schema: Of the section.
+        used: Positions in the palette, from 1, of the materials in the body; others are not checked.
+        unsupported: Collects the tags; materials and regions are numbered.
+        schema: Schema of the section.
     """
     seen: Counter[str] = Counter()
     for element in section.element:
@@ -39,24 +39,24 @@ def refuse_the_unknown(
             place = f"{place} {seen[tag]}"
         role = schema.get(tag)
         if isinstance(role, Mapping):
-            refuse_the_unknown(Section(element, place), used, refusals, role)
+            collect_unsupported(Section(element, place), used, unsupported, role)
         elif not _is_accepted(element, role):
-            value = shown(" ".join(str(text) for text in element.itertext()))
-            refusals.add(place, value, "unknown to vox" if role is None else "")
+            value = shorten(" ".join(str(text) for text in element.itertext()))
+            unsupported.add(place, value, "unknown tag" if role is None else "")
 
 
 def _is_accepted(element: etree._Element, role: Role | float | None) -> bool:
-    """Return whether an element asks for nothing that vox does not do."""
+    """Return whether an element enables nothing that vox does not simulate."""
     if role is None:
         return _is_off(element)
     if isinstance(role, Role):
-        return role is not Role.REFUSED
+        return role is not Role.UNSUPPORTED
     text = (element.text or "").strip()
-    is_the_number = not text or number_in(text) == role or (role == 0.0 and _is_off(element))
+    is_the_number = not text or parse_number(text) == role or (role == 0.0 and _is_off(element))
     return is_the_number and not len(element)
 
 
 def _is_off(element: etree._Element) -> bool:
-    """Return whether all that an element holds is empty, a zero or ``false``."""
+    """Return whether all texts in an element are empty, zero or ``false``."""
     texts = (str(text).strip().lower() for text in element.itertext())
-    return all(text in _OFF_WORDS or number_in(text) == 0.0 for text in texts)
+    return all(text in _OFF_WORDS or parse_number(text) == 0.0 for text in texts)

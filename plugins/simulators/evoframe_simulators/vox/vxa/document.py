@@ -1,4 +1,4 @@
-"""XML from anyone: bounded before it is parsed, without entities, files or networks."""
+"""Parsing of untrusted XML: of limited size, without entities, external files or network access."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from lxml import etree
 
 from evoframe import InputError
 
-__all__ = ["parsed", "shown"]
+__all__ = ["parse_xml", "shorten"]
 
 _MOST_BYTES = 64 * 2**20
-_MOST_ELEMENTS = 2**20  # the parser needs a hundred bytes and more for each, however short it is
+_MOST_ELEMENTS = 2**20  # the parser requires at least a hundred bytes for each, however short it is
 _LONGEST_SHOWN = 60
 
 
-def parsed(path: Path) -> etree._Element:
+def parse_xml(path: Path) -> etree._Element:
     """Return the root of an XML file.
 
-    The text is UTF-8, or else ISO-8859-1, whatever it declares itself to be.
+    The text is decoded as UTF-8, or as ISO-8859-1 if that fails; the declared encoding is ignored.
 
     Raises:
         OSError: The file cannot be read.
-        InputError: It is too large, no XML, or defines entities; says which.
+        InputError: The file is too large, is not XML, or defines entities.
     """
     text = _bounded_text(path)
     parser = etree.XMLParser(
@@ -30,7 +30,7 @@ def parsed(path: Path) -> etree._Element:
         load_dtd=False,
         no_network=True,
         resolve_entities=False,
-        huge_tree=False,  # libxml2's own limits to depth and to the length of a text stay in force
+        huge_tree=False,  # keeps libxml2's limits on depth and length of texts
         remove_comments=True,
         remove_pis=True,
         collect_ids=False,
@@ -38,11 +38,11 @@ def parsed(path: Path) -> etree._Element:
     try:
         return etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
-        raise InputError(f"is no XML: {shown(error.msg or 'unknown fault', quoted=False)}") from error
+        raise InputError(f"is not XML: {shorten(error.msg or 'unknown error', quoted=False)}") from error
 
 
-def shown(text: str, *, quoted: bool = True) -> str:
-    """Return a text from a file in a form and length that a message can bear."""
+def shorten(text: str, *, quoted: bool = True) -> str:
+    """Return a text from a file, shortened and printable, for a message."""
     line = " ".join(text.split())
     printable = "".join(char if char.isprintable() else "?" for char in line[: 2 * _LONGEST_SHOWN])
     longest = _LONGEST_SHOWN if quoted else 2 * _LONGEST_SHOWN
@@ -51,20 +51,20 @@ def shown(text: str, *, quoted: bool = True) -> str:
 
 
 def _bounded_text(path: Path) -> str:
-    """Return the text of a file, unless it is larger than a parser should be given, or names entities."""
+    """Return the text of a file that is small enough for the parser and declares no entities."""
     with path.open("rb") as file:
         data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
-        raise InputError(f"is larger than {_MOST_BYTES // 2**20} MiB")
+        raise InputError(f"exceeds {_MOST_BYTES // 2**20} MiB")
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError:
         text = data.decode("iso-8859-1")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise InputError("has a DOCTYPE or an ENTITY, which no VXA file needs; they are not read")
-    # Every element has an end, every attribute its quotes; and neither character stands for a material.
+        raise InputError("contains a DOCTYPE or an ENTITY, which is not allowed; remove it")
+    # Every element has an end and every attribute quotes; materials use neither of these characters.
     elements = text.count("</") + text.count("/>")
     quotes = text.count('"') + text.count("'")
     if max(elements, quotes // 2) > _MOST_ELEMENTS:
-        raise InputError(f"has more than {_MOST_ELEMENTS} elements or attributes")
+        raise InputError(f"exceeds {_MOST_ELEMENTS} elements or attributes")
     return text

@@ -1,4 +1,4 @@
-"""The contents of a VXA file, and the settings that simulate it."""
+"""Contents of a VXA file, and its settings."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe import InputError
-from evoframe_simulators.vox.models import possible_clocks, time_step_of, without_number
+from evoframe_simulators.vox.models import possible_clocks, strip_body_index, time_step_of
 from evoframe_simulators.vox.settings import VoxSettings
 
 __all__ = ["FIRST_CHARACTER", "SHAPES", "VxaFile"]
 
 FIRST_CHARACTER = 48
-"""In a layer of the structure, a material is one character: ``0`` and the position in the palette added."""
+"""Code point of ``0``; the character of a material in a layer is this plus its position in the palette."""
 
 SHAPES = ("a box", "a cylinder", "a sphere", "a mesh")
-"""What a region's ``PrimType`` stands for."""
+"""Shapes by a region's ``PrimType``."""
 
 
 @attrs.frozen(eq=False)
 class VxaFile:
-    """A body with its controller, and the options of ``vox`` that say how it is to be simulated.
+    """A body with its controller, and the options of ``vox`` for its simulation.
 
     Attributes:
         options: Name -> value, as arguments of ``VoxSettings``.
-        material: ``uint8[X, Y, Z]``, positions in the palette; 0 is empty.
-        phase: ``float64[X, Y, Z]``, the offsets as they stand in the file, which the engine reads in cycles.
-        steps: How many steps to make, if the file counts them and says no duration.
+        material: Positions in the palette, ``uint8[X, Y, Z]``; 0 is empty.
+        phase: Unconverted offsets, ``float64[X, Y, Z]``; the engine interprets them as cycles.
+        steps: Number of steps, if the file sets it instead of a duration.
     """
 
     options: Mapping[str, Any]
@@ -40,15 +40,15 @@ class VxaFile:
 
     @property
     def canvas(self) -> tuple[int, int, int]:
-        """Cells along x, y and z."""
+        """Number of cells along x, y and z."""
         x, y, z = self.material.shape
         return x, y, z
 
     def settings(self) -> VoxSettings:
-        """Return the settings that simulate the body; those that a file does not name have their defaults.
+        """Return the settings for the body; settings that are not in the file have their defaults.
 
         Raises:
-            InputError: A value is out of range, or the solver cannot work with them; says which, or why.
+            InputError: A value is out of range, or the solver rejects the combination.
         """
         try:
             settings = VoxSettings(**self.options)
@@ -57,5 +57,5 @@ class VxaFile:
                 settings = attrs.evolve(settings, duration=duration)
             possible_clocks(settings)
         except ValueError as error:
-            raise InputError(without_number(error)) from error
+            raise InputError(strip_body_index(error)) from error
         return settings

@@ -1,4 +1,4 @@
-"""Sections of a VXA file that are written although nothing in them is on."""
+"""Sections of a VXA file that are written although all their features are off."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ CHANGES: Values = {
     "MinElasticMod": 0,
     "MaxElasticMod": 0,
 }
-"""Of stiffness that changes, which needs a section of the structure to be on."""
+"""Values for variable stiffness, which is off without its section of the structure."""
 
 CONTROLLERS: Mapping[str, Values] = {
     "NeuralNet": {
@@ -86,4 +86,4 @@ UNUSED = PaletteMaterial(
     dynamic_friction=0.5,
     name="unused",
 )
-"""Stands at the positions of the palette that no voxel has."""
+"""Placeholder at positions of the palette that no voxel uses."""

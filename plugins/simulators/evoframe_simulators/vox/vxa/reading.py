@@ -1,7 +1,7 @@
-"""VXA files read: the body, its offsets, and the options of ``vox`` that simulate it as the engine would.
+"""Reading of VXA files: the body, its offsets, and the options of ``vox`` that reproduce the engine.
 
-The engine is that of the fork ``reconfigurable_organisms``. Under water (``FluidEnvironment`` 1) it keeps
-gravity and floor, and so does vox; evosoro's ``_voxcad_land_water`` switches both off then.
+The engine is the fork ``reconfigurable_organisms``. Under water (``FluidEnvironment`` 1) it keeps gravity and
+floor, and so does vox; evosoro's ``_voxcad_land_water`` disables both.
 """
 
 from __future__ import annotations
@@ -13,73 +13,73 @@ from typing import Any
 import numpy as np
 
 from evoframe import InputError
-from evoframe_simulators.files import naming
-from evoframe_simulators.vox.materials import PaletteMaterial, single
-from evoframe_simulators.vox.vxa.boxes import regions_in
+from evoframe_simulators.files import naming_source
+from evoframe_simulators.vox.materials import PaletteMaterial, round_to_single
+from evoframe_simulators.vox.vxa.boxes import read_regions
 from evoframe_simulators.vox.vxa.cells import Lattice
-from evoframe_simulators.vox.vxa.checking import refuse_the_unknown
-from evoframe_simulators.vox.vxa.document import parsed, shown
+from evoframe_simulators.vox.vxa.checking import collect_unsupported
+from evoframe_simulators.vox.vxa.document import parse_xml, shorten
 from evoframe_simulators.vox.vxa.file import VxaFile
-from evoframe_simulators.vox.vxa.sections import Refusals, Section
-from evoframe_simulators.vox.vxa.structure import canvas_in, material_in, phase_in
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported
+from evoframe_simulators.vox.vxa.structure import read_canvas, read_material, read_phase
 
 __all__ = ["read_vxa"]
 
-_VERSIONS = ("", "0.93", "0.94")  # of the section VXC; the structure of others is written in another way
-_HORIZON_SYSTEMS = (2, 3)  # one and the same in the engine, whose choice of all voxels is never taken
-_PERIODS = 3  # of the temperature, whether it varies or not
+_VERSIONS = ("", "0.93", "0.94")  # of the section VXC; other versions encode the structure differently
+_HORIZON_SYSTEMS = (2, 3)  # equivalent in the engine
+_PERIODS = 3  # of the temperature, even if it is constant
 _DURATIONS = (2, _PERIODS)
 _MOST_COUNTED_STEPS = 10**12
 
 
 def read_vxa(path: Path) -> VxaFile:
-    """Return what a VXA file says (physics.md, sections 1, 4, 8, 9 and 12).
+    """Read a VXA file (docs/physics.md, sections 1, 4, 8, 9 and 12).
 
-    Missing tags have the engine's values; what vox does not simulate is refused by name, all of it at once
-    (see :mod:`.vxa.schema`). Refused are also a temperature that does not vary, which this
-    engine lets vary all the same and others do not, and a search for contacts in every step (``ColSystem`` 0
-    and 1), which finds some that the published one misses.
+    Missing tags have the engine's defaults. One error reports all features that vox does not simulate (see
+    :mod:`.vxa.schema`). These include a constant temperature, which this engine varies nevertheless and
+    others do not, and a search for contacts in every step (``ColSystem`` 0 and 1), which finds contacts that
+    the published one misses.
 
     Raises:
-        InputError: The file cannot be read, is no VXA file, or asks for more; says what, and where.
+        InputError: The file cannot be read, is not a VXA file, or uses features that vox does not simulate.
     """
-    with naming(path):
-        element = parsed(path)
+    with naming_source(path):
+        element = parse_xml(path)
         if element.tag != "VXA":
-            raise InputError(f"is no VXA file: it begins with {shown(str(element.tag))}; expected 'VXA'")
-        root, refusals = Section(element, ""), Refusals()
+            raise InputError(f"is not a VXA file: found root tag {shorten(str(element.tag))}, expected 'VXA'")
+        root, unsupported = Section(element, ""), Unsupported()
         simulator, environment, vxc = (root.need(tag) for tag in ("Simulator", "Environment", "VXC"))
         structure, palette = vxc.need("Structure"), vxc.need("Palette")
-        _check_encoding(vxc, structure, refusals)
-        lattice = Lattice(canvas_in(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
-        material = material_in(structure, lattice.canvas, palette.count("Material"))
+        _check_encoding(vxc, structure, unsupported)
+        lattice = Lattice(read_canvas(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
+        material = read_material(structure, lattice.canvas, palette.count("Material"))
         used = np.unique(material[material > 0]).tolist()
-        refuse_the_unknown(root, used, refusals)
-        stop, steps = _stop(simulator, environment, refusals)
+        collect_unsupported(root, used, unsupported)
+        stop, steps = _stop(simulator, environment, unsupported)
         options = {
             "voxel_size": lattice.edge,
-            "fixed": regions_in(environment, lattice, refusals),
+            "fixed": read_regions(environment, lattice, unsupported),
             **_integration(simulator),
-            **_collisions(simulator, refusals),
+            **_collisions(simulator, unsupported),
             **stop,
             **_surroundings(environment),
-            **_thermal(environment, refusals),
+            **_thermal(environment, unsupported),
         }
-        refusals.check()
+        unsupported.check()
         numbered = enumerate(palette.all("Material"), 1)
         options["palette"] = tuple(_material(found, code) for code, found in numbered if code in used)
-        return VxaFile(options, material, phase_in(structure, lattice.canvas), steps)
+        return VxaFile(options, material, read_phase(structure, lattice.canvas), steps)
 
 
-def _check_encoding(vxc: Section, structure: Section, refusals: Refusals) -> None:
-    """Refuse a structure that is not written in characters, before it is read as if it were."""
+def _check_encoding(vxc: Section, structure: Section, unsupported: Unsupported) -> None:
+    """Reject a structure in an unknown encoding before it is decoded."""
     compression = str(structure.element.get("Compression", ""))
     if compression != "ASCII_READABLE":
-        refusals.add(f"{structure.place} Compression", shown(compression), "vox reads ASCII_READABLE")
+        unsupported.add(f"{structure.place} Compression", shorten(compression), "expected ASCII_READABLE")
     version = str(vxc.element.get("Version", ""))
     if version not in _VERSIONS:
-        refusals.add(f"{vxc.place} Version", shown(version), "vox reads 0.93 and 0.94")
-    refusals.check()
+        unsupported.add(f"{vxc.place} Version", shorten(version), "expected 0.93 or 0.94")
+    unsupported.check()
 
 
 def _integration(simulator: Section) -> dict[str, Any]:
@@ -92,38 +92,41 @@ def _integration(simulator: Section) -> dict[str, Any]:
     }
 
 
-def _collisions(simulator: Section, refusals: Refusals) -> dict[str, Any]:
+def _collisions(simulator: Section, unsupported: Unsupported) -> dict[str, Any]:
     section = simulator.find("Collisions")
     if section is None or not section.flag("SelfColEnabled"):
         return {"self_collision": False}
     system = section.whole("ColSystem", 3, most=3)
     if system not in _HORIZON_SYSTEMS:
-        refusals.add(section.at("ColSystem"), shown(str(system)), "vox searches as 3 does")
+        unsupported.add(section.at("ColSystem"), shorten(str(system)), "expected 3")
     return {"self_collision": True, "collision_horizon": section.number("CollisionHorizon", 2.0, least=1.0)}
 
 
-def _stop(simulator: Section, environment: Section, refusals: Refusals) -> tuple[dict[str, Any], int | None]:
-    """Return when the actuation begins and the simulation ends, and the steps if they are counted instead."""
+def _stop(
+    simulator: Section, environment: Section, unsupported: Unsupported
+) -> tuple[dict[str, Any], int | None]:
+    """Return start and duration as options, and the number of steps if the file sets that instead."""
     section = simulator.need("StopCondition")
     start = section.number("InitCmTime", 0.0, least=0.0)
     if section.number("ActuationStartTime", 0.0, least=0.0) > start:
         late = section.text("ActuationStartTime") or ""
-        refusals.add(section.at("ActuationStartTime"), shown(late), "later than InitCmTime")
+        unsupported.add(section.at("ActuationStartTime"), shorten(late), "later than InitCmTime")
     kind = section.whole("StopConditionType", 0, most=6)
-    if kind == 1:  # which the engine rounds, and exceeds by one step
+    if kind == 1:  # the engine rounds the number and makes one step more
         counted = section.number("StopConditionValue", 0.0, least=0.0)
         if counted > _MOST_COUNTED_STEPS:
             raise InputError(
-                f"{section.at('StopConditionValue')}: {counted:g} steps; at most {_MOST_COUNTED_STEPS:g}"
+                f"found {counted:g} steps, expected at most {_MOST_COUNTED_STEPS:g}",
+                key=section.at("StopConditionValue"),
             )
         return {"start_time": start}, math.floor(counted + 0.5) + 1
     if kind not in _DURATIONS:
-        why = "vox stops after a time (2), periods of the temperature (3) or a number of steps (1)"
-        refusals.add(section.at("StopConditionType"), shown(str(kind)), why)
+        why = "expected a number of steps (1), a time (2) or temperature periods (3)"
+        unsupported.add(section.at("StopConditionType"), shorten(str(kind)), why)
         return {}, None
     duration = section.number("StopConditionValue", 0.0, above=0.0)
     if kind == _PERIODS:
-        duration *= single(environment.need("Thermal").number("TempPeriod", 0.1, above=0.0))
+        duration *= round_to_single(environment.need("Thermal").number("TempPeriod", 0.1, above=0.0))
     return {"start_time": start, "duration": duration}, None
 
 
@@ -140,27 +143,27 @@ def _surroundings(environment: Section) -> dict[str, Any]:
     return options
 
 
-def _thermal(environment: Section, refusals: Refusals) -> dict[str, Any]:
-    """Return the temperatures; without an actuation the amplitude is the base."""
+def _thermal(environment: Section, unsupported: Unsupported) -> dict[str, Any]:
+    """Return the temperature options; without actuation the amplitude equals the base."""
     section = environment.need("Thermal")
     base = section.number("TempBase", 25.0)
     if section.text("TempAmplitude") is None:
         highest = section.number("TempAmp", base)
     else:
         swing = section.number("TempAmplitude", 0.0)
-        # The engine holds the swing in single precision; where a sum would lose it, the base is not needed.
-        base = base if single(base + swing - base) == single(swing) else 0.0
+        # The engine holds the swing in single precision. If adding the base would round it, drop the base.
+        base = base if round_to_single(base + swing - base) == round_to_single(swing) else 0.0
         highest = base + swing
     if not section.flag("TempEnabled") or highest == base:
         return {"temperature_base": base, "temperature_amplitude": base}
     if not section.flag("VaryTempEnabled"):
-        refusals.add(section.at("VaryTempEnabled"), "'0'", "with TempEnabled = 1, a constant temperature")
+        unsupported.add(section.at("VaryTempEnabled"), "'0'", "constant temperature with TempEnabled = 1")
     period = section.number("TempPeriod", 0.1, above=0.0)
     return {"temperature_base": base, "temperature_amplitude": highest, "frequency": 1.0 / period}
 
 
 def _material(found: Section, code: int) -> PaletteMaterial:
-    """Return a material of the palette; its code is its position."""
+    """Return a material of the palette, with its position as code."""
     mechanical = found.need("Mechanical")
     name = " ".join((found.text("Name") or "").split())
     try:
@@ -175,4 +178,4 @@ def _material(found: Section, code: int) -> PaletteMaterial:
             name=name if name.isprintable() else "",
         )
     except ValueError as error:
-        raise InputError(f"{mechanical.place}: {error}") from error
+        raise InputError(str(error), key=mechanical.place) from error

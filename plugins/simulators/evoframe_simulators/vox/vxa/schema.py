@@ -1,20 +1,19 @@
-"""The tags of the dialect, and what becomes of each when a file is read.
+"""Tags of the dialect, and the treatment of each in reading.
 
-A file is read as the fork ``reconfigurable_organisms`` of the old Voxelyze reads it. Facts about this engine
-that are used here and in :mod:`~evoframe_simulators.vox.vxa.reading`, beside those of physics.md:
+Files are interpreted like the fork ``reconfigurable_organisms`` of the old Voxelyze does. Facts about this
+engine used here and in :mod:`~evoframe_simulators.vox.vxa.reading`, in addition to docs/physics.md:
 
-- A tag that stands alone in its section is looked for by name; of two with one name the engine takes the
-  first, so a file with two is refused.
-- Sections that are missing leave the engine's own defaults, which are not those of missing tags: without
-  ``Gravity`` there is gravity and a floor, without ``Damping`` another slow damping. Such files are refused.
-- Under water (``FluidEnvironment`` 1) gravity and floor stay as they are.
+- The engine takes the first of two equal tags where one is expected; a file with duplicates is rejected.
+- In place of a missing section the engine uses defaults that differ from those of missing tags: without
+  ``Gravity`` there are gravity and a floor, without ``Damping`` another slow damping. Such files fail.
+- Under water (``FluidEnvironment`` 1) gravity and floor do not change.
 
-Evosoro's engines differ: ``_voxcad_land_water`` switches gravity and floor off under water, and ``_voxcad``
-caps the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, which with 0 leaves no expansion.
+Evosoro's engines differ: ``_voxcad_land_water`` disables gravity and floor under water, and ``_voxcad`` caps
+the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, so that 0 prevents expansion.
 
-The rule for tags that vox does not simulate: a tag that the schema knows to switch something on is refused
-unless it has its value for "off"; a tag that it does not know is refused unless all that it holds is empty, a
-zero or ``false``. All of a file's refusals make one message. Materials that no voxel has are not looked at.
+Rule for tags that vox does not simulate: a tag in the schema that enables a feature is rejected unless its
+value is "off"; an unknown tag is rejected unless all its contents are empty, zero or ``false``. One error
+reports all rejected tags of a file. Materials that no voxel uses are not checked.
 """
 
 from __future__ import annotations
@@ -27,32 +26,32 @@ __all__ = ["MATERIAL", "REGION", "VXA", "Role", "Schema"]
 
 
 class Role(enum.Enum):
-    """What becomes of a tag's value."""
+    """Treatment of a tag."""
 
     READ = enum.auto()
-    """It is an option of vox."""
+    """The value determines an option of vox."""
 
     IDLE = enum.auto()
-    """It changes nothing that is simulated: a name, a colour, a file, a detail of what is off or not read."""
+    """The value has no effect on the simulation: a name, a color, a file, a detail of a disabled feature."""
 
-    REFUSED = enum.auto()
-    """Whatever it holds, it switches on what vox does not simulate."""
+    UNSUPPORTED = enum.auto()
+    """The tag enables a feature that vox does not simulate, whatever its value."""
 
 
 Schema: TypeAlias = Mapping[str, "Schema | Role | float"]
-"""Tag -> the tags of a section, what becomes of a value, or the only number that a value may be."""
+"""Tag -> the schema of a section, the treatment of a value, or the only accepted number."""
 
 READ: Final = Role.READ
 IDLE: Final = Role.IDLE
-REFUSED: Final = Role.REFUSED
+UNSUPPORTED: Final = Role.UNSUPPORTED
 OFF: Final = 0.0
 
 MATERIAL: Final[Schema] = {
-    "MatType": OFF,  # others are made of further materials
+    "MatType": OFF,  # other types combine materials
     "Name": READ,
     "Display": IDLE,
     "Mechanical": {
-        "MatModel": OFF,  # linear; others yield or fail
+        "MatModel": OFF,  # linear; other models yield or fail
         "Elastic_Mod": READ,
         "Plastic_Mod": IDLE,
         "Yield_Stress": IDLE,
@@ -69,14 +68,14 @@ MATERIAL: Final[Schema] = {
         "uDynamic": READ,
     },
 }
-"""One ``Material`` of the palette."""
+"""Schema of a ``Material`` of the palette."""
 
 REGION: Final[Schema] = {
     **dict.fromkeys(("PrimType", "X", "Y", "Z", "dX", "dY", "dZ", "DofFixed", "Fixed"), READ),
     **dict.fromkeys(("Radius", "R", "G", "B", "alpha"), IDLE),
     **{f"{what}{axis}": OFF for what in ("Force", "Torque", "Displace", "AngDisplace") for axis in "XYZ"},
 }
-"""One ``FRegion``: voxels that are held, pushed or moved."""
+"""Schema of an ``FRegion``: voxels that are clamped, pushed or moved."""
 
 _SIMULATOR: Final[Schema] = {
     "Integration": {"Integrator": OFF, "DtFrac": READ},
@@ -113,7 +112,7 @@ _SIMULATOR: Final[Schema] = {
     "SimStop": IDLE,
     "ParentLifetime": IDLE,
     "MinTempFact": 0.1,
-    # Of stiffness that changes and of voxels that seek a source, which need what is refused below.
+    # For variable stiffness and voxels that seek a source; both require tags that are rejected below.
     "MaxTempFactChange": IDLE,
     "DampEvolvedStiffness": IDLE,
     "MaxStiffnessChange": IDLE,
@@ -184,8 +183,8 @@ _ENVIRONMENT: Final[Schema] = {
     "ExpandOnly": OFF,
     "FallingProhibited": OFF,  # ends the simulation when a body falls over
     "DampEvolvedStiffness": IDLE,
-    "Sources": REFUSED,
-    "FloorRadius": REFUSED,
+    "Sources": UNSUPPORTED,
+    "FloorRadius": UNSUPPORTED,
 }
 
 _STRUCTURE: Final[Schema] = {
@@ -194,10 +193,11 @@ _STRUCTURE: Final[Schema] = {
     "PhaseOffset": {"Layer": READ},
     **{f"num{network}Synapses": OFF for network in ("RegenerationModel", "ForwardModel", "Controller")},
     **{
-        f"{network}SynapseWeights": REFUSED for network in ("RegenerationModel", "ForwardModel", "Controller")
+        f"{network}SynapseWeights": UNSUPPORTED
+        for network in ("RegenerationModel", "ForwardModel", "Controller")
     },
-    **dict.fromkeys(("FinalPhaseOffset", "InitialVoxelSize", "FinalVoxelSize"), REFUSED),
-    **dict.fromkeys(("Stiffness", "StressAdaptationRate", "PressureAdaptationRate"), REFUSED),
+    **dict.fromkeys(("FinalPhaseOffset", "InitialVoxelSize", "FinalVoxelSize"), UNSUPPORTED),
+    **dict.fromkeys(("Stiffness", "StressAdaptationRate", "PressureAdaptationRate"), UNSUPPORTED),
     **dict.fromkeys(("VestibularContribution", "StressContribution", "PressureContribution"), IDLE),
     **{f"PreDamage{what}": IDLE for what in ("Roll", "Pitch", "Yaw", "Stress", "Pressure")},
 }
@@ -216,4 +216,4 @@ VXA: Final[Schema] = {
         "Structure": _STRUCTURE,
     },
 }
-"""The whole of a file."""
+"""Schema of a file."""

@@ -1,21 +1,21 @@
-"""VXA files written: every section, as the engine leaves the members of a missing one as they happen to be.
+"""Writing of VXA files, always with every section: the engine leaves members of missing ones uninitialized.
 
-No text element is empty, which its reader does not survive (physics.md, section 12.8 and 12.9), and numbers
-have all their digits, so that what is read again is what was written.
+No text element is empty, because the engine's reader crashes on those (docs/physics.md, sections 12.8 and
+12.9). Numbers have all their digits, so that reading a file returns what was written.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
-from html import escape  # that of xml.sax imports half the network
+from html import escape  # xml.sax.saxutils would import network modules
 from typing import Any
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe import InputError
+from evoframe import CONTROLLER, MORPHOLOGY, InputError
 from evoframe_simulators.vox.bodies import check_cycles
 from evoframe_simulators.vox.materials import PaletteMaterial
 from evoframe_simulators.vox.regions import FixedRegion
@@ -29,24 +29,24 @@ __all__ = ["left_out", "write_vxa"]
 _LARGEST_CODE = ord("~") - FIRST_CHARACTER
 _PASSIVE, _EXPANDING, _CONTRACTING = (0.0, 0.6, 0.8), (0.8, 0.2, 0.0), (0.0, 0.6, 0.2)
 
-# What the format has no tag for: the option, the same in words, and whether it only matters in contacts.
+# Options without a tag in the format: name, description, and whether the option affects only contacts.
 _WITHOUT_TAG = (
     ("ramp", "the ramp at the start of the contraction", False),
-    ("substeps", "the division of time steps", False),
-    ("collision_envelope", "the distance of contacts", True),
+    ("substeps", "the substeps of time steps", False),
+    ("collision_envelope", "the distance at which contacts start", True),
     ("contact_damping", "the damping of contacts", True),
     ("contact_friction", "the friction of contacts", True),
-    ("complete_contacts", "the search that misses no contact", True),
-    ("step_limit", "the limit of steps", False),
-    ("largest_strain", "the strain that counts as diverged", False),
-    ("largest_distance", "the distance that counts as diverged", False),
+    ("complete_contacts", "the complete search for contacts", True),
+    ("step_limit", "the maximum number of steps", False),
+    ("largest_strain", "the strain limit for divergence", False),
+    ("largest_distance", "the distance limit for divergence", False),
 )
 
 _Node = str | Iterable[str]
 
 
 def left_out(settings: VoxSettings) -> tuple[str, ...]:
-    """Return what of the settings a VXA file cannot say; what the engine does anyway is not missing."""
+    """Return the settings that a VXA file cannot express, unless they equal the engine's behavior."""
     defaults = attrs.fields_dict(VoxSettings)
     return tuple(
         f"{words} ({option} = {getattr(settings, option)})"
@@ -62,20 +62,20 @@ def write_vxa(
     phase_cycles: NDArray[np.float64],
     acting: NDArray[np.bool_],
 ) -> bytes:
-    """Return a body with its controller and settings as a VXA file, the same bytes for the same arguments.
+    """Return a body with its controller and settings as a VXA file: the same bytes for the same arguments.
 
     Args:
         settings: The settings.
         material: ``uint8[X, Y, Z]``; a code is the position of its material in the palette that is written.
-        phase_cycles: ``float64[X, Y, Z]``, cycles.
-        acting: ``bool[X, Y, Z]``, where an offset changes the size of a voxel; others may be anything.
+        phase_cycles: Offsets, ``float64[X, Y, Z]``, cycles.
+        acting: Mask of the cells whose offset has an effect, ``bool[X, Y, Z]``; others may have any value.
 
     Raises:
-        InputError: The body is empty, or cannot be written in this format; says why.
+        InputError: The body is empty, or cannot be expressed in the format.
     """
     if not material.any():
-        raise InputError("the body has no voxel, and the engine takes none without")
-    check_cycles(phase_cycles[acting], "controller")
+        raise InputError("has no voxels; the engine requires at least one", key=MORPHOLOGY)
+    check_cycles(phase_cycles[acting], CONTROLLER)
     usable = (material > 0) & np.isfinite(phase_cycles)
     lines = [
         *_node("Simulator", _simulator(settings)),
@@ -84,11 +84,11 @@ def write_vxa(
     ]
     head = '<?xml version="1.0" encoding="ISO-8859-1"?>'
     text = "\n".join([head, *_node("VXA", lines, Version="1.0"), ""])
-    return text.encode("ascii", errors="xmlcharrefreplace")  # which every reader takes for the same
+    return text.encode("ascii", errors="xmlcharrefreplace")  # equivalent for every reader
 
 
 def _node(tag: str, content: _Node, **attributes: str) -> Iterator[str]:
-    """Yield the lines of an element that holds a text, or further lines."""
+    """Yield the lines of an element that contains a text, or other lines."""
     opening = " ".join([tag, *(f'{name}="{value}"' for name, value in attributes.items())])
     if isinstance(content, str):
         yield f"<{opening}>{content}</{tag}>"
@@ -164,7 +164,7 @@ def _environment(settings: VoxSettings, canvas: tuple[int, ...]) -> Iterator[str
     yield from _section("Thermal", thermal)
     for tag, values in CONTROLLERS.items():
         yield from _section(tag, values)
-    traces = max(0.01, settings.duration / 100)  # of a long simulation the engine would write huge ones
+    traces = max(0.01, settings.duration / 100)  # keeps the engine's traces of long simulations small
     yield from _values({**GROWTH, "TimeBetweenTraces": traces, "SavePassiveData": 0, **TASKS})
     yield from _values(
         {"FluidEnvironment": settings.fluid_drag > 0.0, "AggregateDragCoefficient": settings.fluid_drag}
@@ -199,11 +199,10 @@ def _vxc(settings: VoxSettings, material: NDArray[np.uint8], phase: NDArray[np.f
 
 
 def _palette(materials: Mapping[int, PaletteMaterial], largest: int) -> Iterator[str]:
-    """Yield materials whose positions are their codes, as far as there can be voxels of them."""
+    """Yield the materials at the positions of their codes, up to the last one that the format can express."""
     if largest > _LARGEST_CODE:
         raise InputError(
-            f"the body has the material {largest}; a VXA file writes each as one character, "
-            f"up to {_LARGEST_CODE}"
+            f"found material {largest}, expected at most {_LARGEST_CODE} in a VXA file", key=MORPHOLOGY
         )
     last = max(code for code in materials if code <= _LARGEST_CODE)
     for code in range(1, last + 1):
@@ -252,5 +251,5 @@ def _layers(cells: NDArray[Any]) -> Iterator[list[Any]]:
 
 def _layer(text: str) -> str:
     if "]]>" in text:
-        raise InputError("the body has materials 45, 45, 14 in a row, which no layer of a VXA file can hold")
+        raise InputError("materials 45, 45, 14 in a row cannot be written to a VXA file", key=MORPHOLOGY)
     return f"<Layer><![CDATA[{text}]]></Layer>"

@@ -1,4 +1,4 @@
-"""Regions in VXA files: the same cells are held in the engine's arithmetic and in that of ``vox``."""
+"""Regions in VXA files clamp the same cells in the arithmetic of the engine and of ``vox``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Write = Callable[..., Path]
 
 
 def engine_mask(region: FixedRegion, lattice: Lattice) -> NDArray[np.bool_]:
-    """Return which cells a region holds as the engine computes it."""
+    """Return a mask of the cells that a region clamps in the engine."""
     held = []
     for start, length, cells in zip(region.origin, region.size, lattice.canvas, strict=True):
         place = lattice.edge * (np.arange(cells) + 0.5) / (lattice.edge * cells)
@@ -36,7 +36,7 @@ def vox_mask(region: FixedRegion, lattice: Lattice) -> NDArray[np.bool_]:
 
 
 def mask_of(region: FixedRegion | None, lattice: Lattice) -> NDArray[np.bool_]:
-    """Return which cells a region holds in both arithmetics."""
+    """Return a mask of the cells that a region clamps in both arithmetics."""
     if region is None:
         return np.zeros(lattice.canvas, np.bool_)
     engine, vox = engine_mask(region, lattice), vox_mask(region, lattice)
@@ -54,7 +54,7 @@ lattices = st.builds(
 
 @st.composite
 def faces_on_cells(draw: st.DrawFn, lattice: Lattice) -> FixedRegion:
-    """Regions whose faces lie between cells, as far as numbers can say so."""
+    """Draw a region whose faces lie between cells, up to rounding."""
     firsts = [draw(st.integers(0, cells - 1)) for cells in lattice.canvas]
     lasts = [draw(st.integers(first, n - 1)) for first, n in zip(firsts, lattice.canvas, strict=True)]
     pairs = zip(firsts, lasts, lattice.canvas, strict=True)
@@ -69,10 +69,10 @@ anywhere = st.builds(
 cases = lattices.flatmap(lambda lattice: st.tuples(st.just(lattice), faces_on_cells(lattice) | anywhere))
 
 ODD = Lattice((20, 1, 1), 0.01), FixedRegion((0.0, 0.0, 0.0), (0.35, 1.0, 1.0))
-"""The engine holds a cell more of this region, whose face lies between two."""
+"""Region with a face between two cells, of which the engine clamps one cell more."""
 
 
-def test_the_two_arithmetics_differ_where_a_face_lies_between_cells() -> None:
+def test_the_arithmetics_differ_if_a_face_lies_between_cells() -> None:
     lattice, region = ODD
     assert np.flatnonzero(engine_mask(region, lattice)).tolist() == list(range(8))
     assert np.flatnonzero(vox_mask(region, lattice)).tolist() == list(range(7))
@@ -80,7 +80,7 @@ def test_the_two_arithmetics_differ_where_a_face_lies_between_cells() -> None:
 
 @given(case=cases)
 @example(case=ODD)
-def test_what_is_written_holds_in_both_what_vox_holds(case: tuple[Lattice, FixedRegion]) -> None:
+def test_a_written_region_clamps_the_cells_of_vox_in_both(case: tuple[Lattice, FixedRegion]) -> None:
     lattice, region = case
     held = mask_of(as_vox_holds(region, lattice.canvas), lattice)
     assert (held == vox_mask(region, lattice)).all()
@@ -88,14 +88,16 @@ def test_what_is_written_holds_in_both_what_vox_holds(case: tuple[Lattice, Fixed
 
 @given(case=cases)
 @example(case=ODD)
-def test_what_is_read_holds_in_both_what_the_engine_holds(case: tuple[Lattice, FixedRegion]) -> None:
+def test_a_region_that_was_read_clamps_the_cells_of_the_engine_in_both(
+    case: tuple[Lattice, FixedRegion],
+) -> None:
     lattice, region = case
     held = mask_of(as_engine_holds(region, lattice), lattice)
     assert (held == engine_mask(region, lattice)).all()
 
 
 @given(data=st.data(), lattice=lattices)
-def test_every_run_of_cells_can_be_said(data: st.DataObject, lattice: Lattice) -> None:
+def test_every_span_of_cells_can_be_expressed(data: st.DataObject, lattice: Lattice) -> None:
     spans = [sorted(data.draw(st.tuples(*[st.integers(0, n - 1)] * 2))) for n in lattice.canvas]
     x, y, z = ((first + 0.25) / n for (first, _), n in zip(spans, lattice.canvas, strict=True))
     dx, dy, dz = ((last - first + 0.5) / n for (first, last), n in zip(spans, lattice.canvas, strict=True))
@@ -105,7 +107,7 @@ def test_every_run_of_cells_can_be_said(data: st.DataObject, lattice: Lattice) -
     assert (mask_of(written, lattice) == expected).all()
     assert written is not None
     assert written.degrees_of_freedom == ("x", "rz")
-    assert as_engine_holds(written, lattice) == written  # so that a file says the same, however often read
+    assert as_engine_holds(written, lattice) == written  # repeated reading and writing changes nothing
 
 
 def test_the_default_is_the_slab_in_both() -> None:
@@ -116,7 +118,7 @@ def test_the_default_is_the_slab_in_both() -> None:
     assert mask_of(written, lattice).tolist() == [[[x == 0] * 3] * 3 for x in range(6)]
 
 
-def test_a_long_canvas_takes_no_time() -> None:
+def test_a_long_canvas_is_fast() -> None:
     lattice = Lattice((2**24, 1, 1), 0.01)
     region = FixedRegion((0.25, 0.0, 0.0), (0.5, 1.0, 1.0))
     for _ in range(10_000):

@@ -1,4 +1,4 @@
-"""Every tag against the schema: what is on and not in vox is refused, and nothing else."""
+"""Check of all tags against the schema: only features that vox lacks are rejected."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from lxml import etree
 from evoframe import InputError
 from evoframe_simulators import Vox
 from evoframe_simulators.vox.vxa import read_vxa
-from evoframe_simulators.vox.vxa.checking import refuse_the_unknown
+from evoframe_simulators.vox.vxa.checking import collect_unsupported
 from evoframe_simulators.vox.vxa.schema import Role, Schema
-from evoframe_simulators.vox.vxa.sections import Refusals, Section
+from evoframe_simulators.vox.vxa.sections import Section, Unsupported
 
 Write = Callable[..., Path]
 
-SCHEMA: Schema = {"Read": Role.READ, "Idle": Role.IDLE, "Refused": Role.REFUSED, "Off": 0.0, "One": 1.0}
+SCHEMA: Schema = {"Read": Role.READ, "Idle": Role.IDLE, "Refused": Role.UNSUPPORTED, "Off": 0.0, "One": 1.0}
 ON = {"Refused", "Off", "One", "Unknown"}
 
 
-def refused(text: str, schema: Schema = SCHEMA) -> str:
-    """Return what is refused of the tags in a section; nothing if all are accepted."""
-    refusals = Refusals()
-    refuse_the_unknown(Section(etree.fromstring(f"<S>{text}</S>"), "S"), (), refusals, schema)
+def rejected(text: str, schema: Schema = SCHEMA) -> str:
+    """Return the rejected tags of a section as text, empty if all are accepted."""
+    unsupported = Unsupported()
+    collect_unsupported(Section(etree.fromstring(f"<S>{text}</S>"), "S"), (), unsupported, schema)
     try:
-        refusals.check()
+        unsupported.check()
     except InputError as error:
-        return str(error).removeprefix("asks for what vox does not simulate: ")
+        return error.problem.partition("): ")[2]
     return ""
 
 
 @given(tags=st.lists(st.sampled_from(sorted({*SCHEMA, "Unknown"})), max_size=6))
-def test_what_is_refused_is_named_in_the_order_of_the_file(tags: list[str]) -> None:
-    found = refused("".join(f"<{tag}>7</{tag}>" for tag in tags))
+def test_rejected_tags_are_named_in_the_order_of_the_file(tags: list[str]) -> None:
+    found = rejected("".join(f"<{tag}>7</{tag}>" for tag in tags))
     named = [part.split(" = ")[0].removeprefix("S/") for part in found.split("; ") if part]
     assert named == [tag for tag in tags if tag in ON]
 
@@ -48,20 +48,20 @@ def test_what_is_refused_is_named_in_the_order_of_the_file(tags: list[str]) -> N
         ("<Off><A>0</A></Off>", "S/Off = '0'"),
         ("<One>0</One>", "S/One = '0'"),
         ("<Refused/>", "S/Refused = ''"),
-        ("<Unknown><A>0</A><B>3</B></Unknown>", "S/Unknown = '0 3' (unknown to vox)"),
+        ("<Unknown><A>0</A><B>3</B></Unknown>", "S/Unknown = '0 3' (unknown tag)"),
     ],
 )
-def test_a_tag_is_accepted_with_its_value_for_off_only(text: str, expected: str) -> None:
-    assert refused(text) == expected
+def test_a_tag_is_accepted_only_with_the_value_for_off(text: str, expected: str) -> None:
+    assert rejected(text) == expected
 
 
 @given(depth=st.integers(1, 5))
-def test_a_section_in_sections_is_named_with_all_that_lead_to_it(depth: int) -> None:
+def test_a_nested_section_is_named_with_its_path(depth: int) -> None:
     text, schema = "<Off>3</Off>", SCHEMA
     for _ in range(depth):
         text, schema = f"<FRegion>{text}</FRegion>", {"FRegion": schema}
     assert isinstance(schema, Mapping)
-    assert refused(text, schema) == f"S{'/FRegion 1' * depth}/Off = '3'"
+    assert rejected(text, schema) == f"S{'/FRegion 1' * depth}/Off = '3'"
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_a_section_in_sections_is_named_with_all_that_lead_to_it(depth: int) -> 
         "<?wind 3?>",
     ],
 )
-def test_unknown_tags_that_are_off_are_none(vxa: Write, more: str) -> None:
+def test_unknown_tags_that_are_off_are_accepted(vxa: Write, more: str) -> None:
     assert read_vxa(vxa(after={"<Environment>": more})).canvas == (6, 3, 3)
 
 
@@ -92,7 +92,7 @@ def test_unknown_tags_that_are_off_are_none(vxa: Write, more: str) -> None:
         ("<LightSource>", "<X>3</X>"),
     ],
 )
-def test_tags_that_move_no_voxel_are_none(vxa: Write, after: str, more: str) -> None:
+def test_tags_without_effect_are_accepted(vxa: Write, after: str, more: str) -> None:
     assert Vox.settings_of(vxa(after={after: more})) == Vox.settings_of(vxa())
 
 
@@ -105,11 +105,11 @@ def test_tags_that_move_no_voxel_are_none(vxa: Write, after: str, more: str) -> 
         "GreedyGrowth",
     ],
 )
-def test_values_that_move_no_voxel_are_none(vxa: Write, tag: str) -> None:
+def test_values_without_effect_are_accepted(vxa: Write, tag: str) -> None:
     assert Vox.settings_of(vxa(**{tag: 4})) == Vox.settings_of(vxa())
 
 
-def test_materials_that_no_voxel_has_are_not_looked_at(vxa: Write) -> None:
+def test_unused_materials_are_not_checked(vxa: Write) -> None:
     path = vxa()
     text = path.read_text()
     start = text.index('<Material ID="4">')

@@ -1,4 +1,4 @@
-"""XML from anyone: bounded before it is parsed."""
+"""Parsing of untrusted XML with limits."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import given, strategies as st
 
 from evoframe import InputError
 from evoframe_simulators.vox.vxa import document
-from evoframe_simulators.vox.vxa.document import parsed, shown
+from evoframe_simulators.vox.vxa.document import parse_xml, shorten
 
 
 @pytest.fixture
@@ -18,46 +18,46 @@ def path(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "iso-8859-1"])
-def test_the_text_is_read_whatever_it_says_of_itself(path: Path, encoding: str) -> None:
+def test_the_declared_encoding_is_ignored(path: Path, encoding: str) -> None:
     path.write_bytes('<?xml version="1.0" encoding="utf-16"?><A>é</A>'.encode(encoding))
-    assert parsed(path).text == "é"
+    assert parse_xml(path).text == "é"
 
 
-def test_comments_and_instructions_are_left_out(path: Path) -> None:
+def test_comments_and_instructions_are_removed(path: Path) -> None:
     path.write_text("<A><!-- 1 --><?b 2?><C/></A>")
-    assert [child.tag for child in parsed(path)] == ["C"]
+    assert [child.tag for child in parse_xml(path)] == ["C"]
 
 
 @pytest.mark.parametrize("text", ["<A b='1'/>" * 3, "<A><B></B><C/></A>", "<A b=\"1\" c='2' d=''/>"])
-def test_as_many_elements_or_attributes_as_there_may_be(
+def test_the_number_of_elements_and_attributes_is_limited(
     path: Path, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path.write_text(f"<R>{text}</R>")
     most = max(text.count("</") + text.count("/>") + 1, (text.count("'") + text.count('"')) // 2)
     monkeypatch.setattr(document, "_MOST_ELEMENTS", most)
-    assert parsed(path).tag == "R"
+    assert parse_xml(path).tag == "R"
     monkeypatch.setattr(document, "_MOST_ELEMENTS", most - 1)
-    with pytest.raises(InputError, match=f"^has more than {most - 1} elements or attributes$"):
-        parsed(path)
+    with pytest.raises(InputError, match=f" {most - 1} elements"):
+        parse_xml(path)
 
 
-def test_as_many_bytes_as_there_may_be(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_size_is_limited(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(document, "_MOST_BYTES", 2**20)
     path.write_bytes(b"<A/>".ljust(2**20))
-    assert parsed(path).tag == "A"
+    assert parse_xml(path).tag == "A"
     path.write_bytes(b"<A/>".ljust(2**20 + 1))
-    with pytest.raises(InputError, match=r"^is larger than 1 MiB$"):
-        parsed(path)
+    with pytest.raises(InputError, match=r" 1 MiB$"):
+        parse_xml(path)
 
 
 @given(text=st.text(), quoted=st.booleans())
-def test_what_is_shown_is_one_short_printable_line(text: str, quoted: bool) -> None:
-    line = shown(text, quoted=quoted)
+def test_a_shown_text_is_one_short_printable_line(text: str, quoted: bool) -> None:
+    line = shorten(text, quoted=quoted)
     assert line.isprintable()
     assert len(line) <= 2 * 60 + 3
     assert line.startswith("'") or not quoted
 
 
-def test_what_is_long_is_shown_with_dots() -> None:
-    assert shown("a" * 61) == f"'{'a' * 60}...'"
-    assert shown("a\n b\x07") == "'a b?'"
+def test_a_long_text_is_shown_with_dots() -> None:
+    assert shorten("a" * 61) == f"'{'a' * 60}...'"
+    assert shorten("a\n b\x07") == "'a b?'"

@@ -1,4 +1,4 @@
-"""What is written although nothing in it is on: the schema accepts all of it, and knows it."""
+"""Sections that are written although all their features are off: the schema accepts all of them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def assert_off(values: Mapping[str, float], schema: Schema) -> None:
         (inert.TASKS, section("Environment")),
     ],
 )
-def test_values_are_those_for_off(values: Mapping[str, float], schema: Schema) -> None:
+def test_values_mean_off(values: Mapping[str, float], schema: Schema) -> None:
     assert values
     assert_off(values, schema)
 
@@ -45,5 +45,5 @@ def test_controllers_are_off(controller: str) -> None:
         assert_off(inert.CONTROLLERS[controller], section("Environment", controller))
 
 
-def test_the_material_that_no_voxel_has_is_passive() -> None:
+def test_the_unused_material_is_passive() -> None:
     assert inert.UNUSED.expansion_coefficient == 0.0

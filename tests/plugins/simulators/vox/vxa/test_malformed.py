@@ -1,4 +1,4 @@
-"""Files from anyone: each of more than two hundred is refused by name, at once and in little memory."""
+"""Rejection of over two hundred malformed files, quickly and in little memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from processes import python
 
-from evoframe import ConfigurationError, InputError
+from evoframe import ConfigurationError, EvoframeError, InputError
 from evoframe_simulators import Vox
 
 TEMPLATE = (Path(__file__).parents[4] / "data" / "vxa" / "template.vxa").read_text(encoding="utf-8")
@@ -98,7 +98,7 @@ DOCTYPES = {
 
 
 def replaced(tag: str, text: str) -> str:
-    """Return the template with another text in the first element of a name."""
+    """Return the template with another text in the first element *tag*."""
     changed, found = re.subn(rf"<{tag}>[^<]*</{tag}>", lambda _: f"<{tag}>{text}</{tag}>", TEMPLATE, count=1)
     assert found
     return changed
@@ -113,7 +113,7 @@ def twice(tag: str) -> str:
 
 
 def wrong_values() -> Iterator[tuple[str, str]]:
-    """Yield files with one value that is none, with what is wrong with each."""
+    """Yield a description and the text of files with one invalid value."""
     for tag in NUMBERS:
         for text in ("nan", "-inf", "1e999", "", "five"):
             yield f"{tag} {text or 'empty'}", replaced(tag, text)
@@ -121,12 +121,12 @@ def wrong_values() -> Iterator[tuple[str, str]]:
         yield f"{tag} half", replaced(tag, "0.5")
     for tag, text in OUT_OF_RANGE:
         yield f"{tag} {text[:10]}", replaced(tag, text)
-    yield "a slope that is none", replaced("FloorEnabled", "1").replace(">0.0</FloorSlope", ">90</FloorSlope")
+    yield "an invalid slope", replaced("FloorEnabled", "1").replace(">0.0</FloorSlope", ">90</FloorSlope")
     yield "tags in a value", replaced("DtFrac", "<b>0.9</b>")
 
 
 def wrong_cells() -> Iterator[tuple[str, str]]:
-    """Yield files whose layers are none, with what is wrong with each."""
+    """Yield a description and the text of files with invalid layers."""
     for cell in CELLS:
         yield f"cell {cell!r}", TEMPLATE.replace("<Layer><![CDATA[1", f"<Layer><![CDATA[{cell}", 1)
     for offset in OFFSETS:
@@ -137,7 +137,7 @@ def wrong_cells() -> Iterator[tuple[str, str]]:
 
 
 def wrong_sections() -> Iterator[tuple[str, str]]:
-    """Yield files that lack something or have too much, with what is wrong with each."""
+    """Yield a description and the text of files with missing or additional parts."""
     for n in range(1, 50):
         yield f"truncated {n}", TEMPLATE[: len(TEMPLATE) * n // 50]
     for tag in NEEDED:
@@ -145,7 +145,7 @@ def wrong_sections() -> Iterator[tuple[str, str]]:
     for tag in ("Damping", "Gravity", "Palette", "X_Voxels", "Elastic_Mod", "DtFrac", "PhaseOffset"):
         yield f"{tag} twice", twice(tag)
     for text in NO_VXA:
-        yield f"no vxa {text[:20]!r}", text
+        yield f"not vxa {text[:20]!r}", text
     for name, (doctype, text) in DOCTYPES.items():
         start, end = TEMPLATE.replace(HEAD, f"{HEAD}{doctype}").split("</GA>")
         yield name, f"{start}{text}</GA>{end}"
@@ -181,14 +181,14 @@ LARGE: dict[str, Callable[[], bytes]] = {
 
 
 def contents() -> Iterator[tuple[str, bytes]]:
-    """Yield all files that are small."""
+    """Yield a description and the content of all small files."""
     for name, text in itertools.chain(wrong_values(), wrong_cells(), wrong_sections()):
         yield name, text.encode()
     for encoding in ENCODINGS:
         yield f"in {encoding}", codecs.encode(TEMPLATE.replace("ISO-8859-1", encoding), encoding)
     yield "zipped", zlib.compress(TEMPLATE.encode())
     yield "a NUL", TEMPLATE.replace("Passive_Soft", "\0").encode()
-    yield "bytes of no text", TEMPLATE.replace("<DtFrac>", "<DtFr\x80c>").encode("iso-8859-1")
+    yield "bytes in a tag", TEMPLATE.replace("<DtFrac>", "<DtFr\x80c>").encode("iso-8859-1")
     for seed in range(5):
         yield f"garbage {seed}", np.random.default_rng(seed).bytes(2000)
     yield "a picture", b"\x89PNG\r\n\x1a\n" + bytes(100)
@@ -197,31 +197,32 @@ def contents() -> Iterator[tuple[str, bytes]]:
 SMALL = dict(contents())
 
 
-def test_there_are_more_than_two_hundred() -> None:
+def test_there_are_over_two_hundred_distinct_files() -> None:
     assert len(SMALL) + len(LARGE) > 200
-    assert len(SMALL) == len(list(contents())), "two have one name"
-    assert len(set(SMALL.values())) == len(SMALL), "two are the same"
+    assert len(SMALL) == len(list(contents())), "two files have the same description"
+    assert len(set(SMALL.values())) == len(SMALL), "two files are equal"
     assert TEMPLATE.encode() not in SMALL.values()
 
 
-def assert_refused(path: Path) -> None:
+def assert_rejected(path: Path) -> None:
     with pytest.raises((InputError, ConfigurationError)) as caught:
         Vox.settings_of(path)
+    assert isinstance(caught.value, EvoframeError)
+    assert caught.value.source == str(path)
     message = str(caught.value)
-    assert message.startswith(f"{path}: ")
     assert message.isprintable()
     assert len(message) < len(str(path)) + 500
 
 
 @pytest.mark.parametrize("name", SMALL)
-def test_what_is_no_vxa_file_is_refused_by_name(name: str, tmp_path: Path) -> None:
+def test_a_malformed_file_is_rejected(name: str, tmp_path: Path) -> None:
     path = tmp_path / "given.vxa"
     path.write_bytes(SMALL[name])
-    assert_refused(path)
+    assert_rejected(path)
 
 
 @pytest.mark.parametrize("name", list(SMALL)[::4])
-def test_the_program_says_so_without_a_traceback(
+def test_the_program_reports_the_file_without_a_traceback(
     name: str, tmp_path: Path, simulated: Callable[[Path], tuple[int, str]]
 ) -> None:
     path = tmp_path / "given.vxa"
@@ -242,7 +243,7 @@ main()
 
 
 @pytest.mark.parametrize("name", LARGE)
-def test_the_largest_are_refused_in_little_memory(name: str, tmp_path: Path) -> None:
+def test_the_largest_files_are_rejected_in_little_memory(name: str, tmp_path: Path) -> None:
     path = tmp_path / "given.vxa"
     path.write_bytes(LARGE[name]())
     # numpy's linear algebra would reserve memory for every core.
@@ -254,34 +255,40 @@ def test_the_largest_are_refused_in_little_memory(name: str, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("make", [None, Path.mkdir])
-def test_what_is_no_file_is_refused_by_name(tmp_path: Path, make: Callable[[Path], None] | None) -> None:
+def test_a_missing_file_or_a_directory_is_rejected(
+    tmp_path: Path, make: Callable[[Path], None] | None
+) -> None:
     if make:
         make(tmp_path / "given.vxa")
-    with pytest.raises(InputError, match=r"given\.vxa: cannot be read: "):
+    with pytest.raises(InputError) as caught:
         Vox.settings_of(tmp_path / "given.vxa")
+    assert caught.value.source == str(tmp_path / "given.vxa")
+    assert isinstance(caught.value.__cause__, OSError)
 
 
-def test_what_never_ends_is_refused(tmp_path: Path) -> None:
+def test_an_endless_file_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "given.vxa").symlink_to("/dev/zero")
-    with pytest.raises(InputError, match=r"given\.vxa: is larger than 64 MiB"):
+    with pytest.raises(InputError, match="64 MiB") as caught:
         Vox.settings_of(tmp_path / "given.vxa")
+    assert caught.value.source == str(tmp_path / "given.vxa")
 
 
-def test_no_file_is_read_that_a_file_names(tmp_path: Path) -> None:
+def test_external_entities_are_not_read(tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("0.9")
     text = TEMPLATE.replace(HEAD, f"{HEAD}<!DOCTYPE VXA [<!ENTITY a SYSTEM '{tmp_path}/secret'>]>")
     path = tmp_path / "given.vxa"
     path.write_text(text.replace("<DtFrac>0.9<", "<DtFrac>&a;<"))
-    with pytest.raises(InputError, match="has a DOCTYPE or an ENTITY"):
+    with pytest.raises(InputError, match=r"DOCTYPE.* ENTITY"):
         Vox.settings_of(path)
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", TEMPLATE.encode(), bytes(1000)])
-def test_what_is_no_npz_file_is_refused_by_name(content: bytes, tmp_path: Path) -> None:
+def test_a_file_of_another_kind_is_rejected_as_npz(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "given.npz"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=r"given\.npz: is no \.npz file with material and phase_cycles"):
+    with pytest.raises(InputError, match=r"\.npz file .* material and phase_cycles") as caught:
         Vox().read(path)
+    assert caught.value.source == str(path)
 
 
 flips = st.lists(st.tuples(st.integers(0, len(TEMPLATE) - 1), st.integers(0, 255)), min_size=1, max_size=6)
@@ -289,7 +296,7 @@ flips = st.lists(st.tuples(st.integers(0, len(TEMPLATE) - 1), st.integers(0, 255
 
 @given(flips=flips, length=st.none() | st.integers(0, len(TEMPLATE)))
 @settings(max_examples=300)
-def test_a_damaged_file_is_read_or_refused_and_nothing_else(
+def test_a_damaged_file_is_either_read_or_rejected(
     flips: list[tuple[int, int]], length: int | None, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     changed = bytearray(TEMPLATE.encode())
@@ -297,9 +304,9 @@ def test_a_damaged_file_is_read_or_refused_and_nothing_else(
         changed[at] = byte
     path = tmp_path_factory.getbasetemp() / "damaged.vxa"
     path.write_bytes(changed[:length])
-    message = f"{path}: "
+    source = str(path)
     try:
         assert Vox.settings_of(path) is not None
     except (InputError, ConfigurationError) as error:
-        message = str(error)
-    assert message.startswith(f"{path}: ")
+        source = error.source
+    assert source == str(path)

@@ -1,4 +1,4 @@
-"""VXA files read: hand-written ones of three programs, and what is refused by name."""
+"""Reading of VXA files: handwritten files for three programs, and rejected features."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Write = Callable[..., Path]
 
 
 def slab(x: int, canvas: tuple[int, int, int]) -> dict[str, Any]:
-    """Return the region that holds all cells of one x, from the centre of the first to that of the last."""
+    """Return the center-to-center region that clamps all cells of one x."""
     return {
         "origin": [(x + 0.5) / canvas[0], *(0.5 / cells for cells in canvas[1:])],
         "size": [0.0, *((cells - 1) / cells for cells in canvas[1:])],
@@ -32,7 +32,7 @@ def slab(x: int, canvas: tuple[int, int, int]) -> dict[str, Any]:
 
 
 def simulator(path: Path) -> Vox:
-    """Return the simulator that a file describes, by way of TOML values."""
+    """Return the simulator for a file, converted to TOML values and back."""
     settings = Vox.settings_of(path)
     assert settings is not None
     assert set(settings) == {field.name for field in attrs.fields(Vox)}
@@ -40,7 +40,7 @@ def simulator(path: Path) -> Vox:
 
 
 def changed(path: Path) -> dict[str, Any]:
-    """Return the options of a file that are not the paper's, other than its palette."""
+    """Return the options of a file that differ from the paper's, except the palette."""
     settings, paper = Vox.settings_of(path), attrs.asdict(Vox())
     assert settings is not None
     return {name: value for name, value in settings.items() if value != paper[name] and name != "palette"}
@@ -52,7 +52,7 @@ class TestTemplate:
     def test_has_the_settings_of_the_paper(self) -> None:
         assert changed(self.path) == {"fixed": [slab(0, (6, 3, 3))]}
 
-    def test_has_the_materials_that_voxels_have(self) -> None:
+    def test_has_the_materials_of_its_voxels(self) -> None:
         palette = simulator(self.path).palette
         assert [(material.code, material.name) for material in palette] == [
             (1, "Passive_Soft"),
@@ -71,7 +71,7 @@ class TestTemplate:
         assert ((phase != 0) == (material == 3)).all()
         assert 1 < np.abs(phase[material == 3]).max() <= 2 * np.pi
 
-    def test_simulates_as_the_paper_does(self) -> None:
+    def test_simulates_like_the_paper(self) -> None:
         [(_, design)] = Vox().read(self.path)
         record = Record(("tip", "voxels"))
         [own], [paper] = (vox.simulate([design], record) for vox in (simulator(self.path), Vox()))
@@ -89,12 +89,11 @@ class TestTemplate:
         [(_, design)] = Vox(phase_unit="radians").read(self.path)
         assert (design.roles["controller"] == Vox().read(self.path)[0][1].roles["controller"]).all()
 
-    def test_a_material_that_the_simulator_has_not_is_refused(self) -> None:
+    def test_a_material_that_the_simulator_lacks_is_rejected(self) -> None:
         vox = Vox(palette=simulator(self.path).palette[:1])
-        with pytest.raises(
-            InputError, match=r"template\.vxa: material has the code 3; codes: 0 empty, 1 Passive_Soft"
-        ):
+        with pytest.raises(InputError, match=r"code 3; .* 0 empty, 1 Passive_Soft$") as caught:
             vox.read(self.path)
+        assert (caught.value.source, caught.value.key) == (str(self.path), "material")
 
 
 class TestEvosoro:
@@ -131,7 +130,7 @@ class TestEvosoro:
 class TestVoxcad:
     path = EXAMPLES / "voxcad.vxa"
 
-    def test_has_the_values_of_the_engine_for_missing_tags(self) -> None:
+    def test_has_the_defaults_of_the_engine_for_missing_tags(self) -> None:
         options = changed(self.path)
         assert options.pop("duration") > 0
         assert options == {
@@ -146,13 +145,13 @@ class TestVoxcad:
         [material] = simulator(self.path).palette
         assert (material.poisson_ratio, material.static_friction, material.dynamic_friction) == (0, 0, 0)
 
-    def test_stops_one_step_after_those_that_are_counted_as_the_engine_does(self) -> None:
+    def test_stops_one_step_after_the_given_number_like_the_engine(self) -> None:
         vox = simulator(self.path)
         [outcome] = vox.simulate([vox.read(self.path)[0][1]], Record(("tip",)))
         assert len(outcome.steps) == 20 + 1
 
     @pytest.mark.parametrize(("counted", "steps"), [("0", 1), ("7.4", 8), ("7.5", 9), ("100000", 100001)])
-    def test_counted_steps_are_rounded(self, vxa: Write, counted: str, steps: int) -> None:
+    def test_the_number_of_steps_is_rounded(self, vxa: Write, counted: str, steps: int) -> None:
         path = vxa("voxcad", StopConditionValue=counted)
         vox = simulator(path)
         [outcome] = vox.simulate([vox.read(path)[0][1]], Record(("tip",), every=1.0))
@@ -160,7 +159,7 @@ class TestVoxcad:
 
 
 class TestSettings:
-    """Single tags of the template, changed."""
+    """Options for the template with single tags changed."""
 
     @pytest.mark.parametrize(
         ("tags", "options"),
@@ -194,19 +193,19 @@ class TestSettings:
             ),
         ],
     )
-    def test_are_options(self, vxa: Write, tags: dict[str, Any], options: dict[str, Any]) -> None:
+    def test_tags_set_options(self, vxa: Write, tags: dict[str, Any], options: dict[str, Any]) -> None:
         read = changed(vxa(**tags))
         read.pop("fixed")
         assert read == options
 
-    def test_an_amplitude_is_one_above_the_base(self, vxa: Write) -> None:
+    def test_an_amplitude_is_added_to_the_base(self, vxa: Write) -> None:
         path = vxa(
             after={"<TempBase>25</TempBase>": "<TempAmplitude>14.4714242553</TempAmplitude>"}, TempAmp=0
         )
         vox = simulator(path)
         assert vox.temperature_amplitude - vox.temperature_base == pytest.approx(14.4714242553, rel=1e-15)
 
-    def test_an_amplitude_is_not_lost_beside_a_large_base(self, vxa: Write) -> None:
+    def test_a_large_base_does_not_round_the_amplitude(self, vxa: Write) -> None:
         vox = simulator(
             vxa(
                 after={"<TempAmp>39.4714242553</TempAmp>": "<TempAmplitude>1e-7</TempAmplitude>"},
@@ -222,22 +221,22 @@ class TestSettings:
         assert [region["degrees_of_freedom"] for region in settings["fixed"]] == ([held] if held else [])
 
     @pytest.mark.parametrize("section", ["Integration", "Collisions", "Features", "EquilibriumMode", "GA"])
-    def test_sections_whose_absence_says_nothing_may_be_missing(self, vxa: Write, section: str) -> None:
+    def test_optional_sections_may_be_missing(self, vxa: Write, section: str) -> None:
         read = changed(vxa(without=[section]))
         read.pop("fixed")
         assert read == ({"self_collision": False} if section == "Collisions" else {})
 
-    def test_without_offsets_they_are_0(self, vxa: Write) -> None:
+    def test_missing_offsets_are_0(self, vxa: Write) -> None:
         [(_, design)] = Vox().read(vxa(without=["PhaseOffset"]))
         assert not design.roles["controller"].any()
 
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "iso-8859-1"])
-    def test_names_may_have_accents_in_either_encoding(self, vxa: Write, encoding: str) -> None:
+    def test_names_may_have_accents_in_every_encoding(self, vxa: Write, encoding: str) -> None:
         path = vxa(Name="Größe é")
         path.write_bytes(path.read_text(encoding="utf-8").encode(encoding))
         assert simulator(path).palette[0].name == "Größe é"
 
-    def test_materials_beyond_the_digits_are_the_characters_after_them(self, vxa: Write) -> None:
+    def test_materials_from_10_are_the_characters_after_the_digits(self, vxa: Write) -> None:
         path = vxa("voxcad")
         materials = "".join(
             f"<Material><Mechanical><Elastic_Mod>{n}e6</Elastic_Mod><Density>1e3</Density></Mechanical></Material>"
@@ -250,7 +249,7 @@ class TestSettings:
         assert [material.youngs_modulus for material in vox.palette] == [1e7, 7e6, 8e6, 17e6]
 
     @pytest.mark.parametrize("code", [85, 112])
-    def test_materials_that_are_blanks_of_unicode_are_cells(self, vxa: Write, code: int) -> None:
+    def test_materials_encoded_as_unicode_whitespace_are_cells(self, vxa: Write, code: int) -> None:
         path = vxa("voxcad")
         mechanical = "<Mechanical><Elastic_Mod>1e7</Elastic_Mod><Density>1e3</Density></Mechanical>"
         palette, blank = "<Palette>" + 112 * f"<Material>{mechanical}</Material>", chr(48 + code)
@@ -259,33 +258,38 @@ class TestSettings:
         [(_, design)] = simulator(path).read(path)
         assert design.roles["morphology"].ravel().tolist() == [code, 1, 1, 1, code]
 
-    def test_periods_that_are_counted_are_of_single_precision(self, vxa: Write) -> None:
+    def test_a_number_of_periods_has_single_precision(self, vxa: Write) -> None:
         path = vxa(StopConditionType=3, StopConditionValue=3, TempPeriod=0.1)
         assert simulator(path).duration == 3 * float(np.float32(0.1))
 
     @pytest.mark.parametrize(("value", "period"), [("1e300", "1e30"), ("2", "1e-60")])
-    def test_periods_out_of_range_are_refused(self, vxa: Write, value: str, period: str) -> None:
+    def test_periods_out_of_range_are_rejected(self, vxa: Write, value: str, period: str) -> None:
         path = vxa(StopConditionType=3, StopConditionValue=value, TempPeriod=period, TempEnabled=0)
-        with pytest.raises(InputError, match=r"given\.vxa: "):
+        with pytest.raises(InputError) as caught:
             simulator(path)
+        assert caught.value.source == str(path)
 
     @pytest.mark.parametrize(("value", "period"), [(0, 0.25), (2, 0), (-1, 0.25), (2, -0.1)])
-    def test_no_periods_are_no_duration(self, vxa: Write, value: float, period: float) -> None:
+    def test_a_duration_without_periods_is_rejected(self, vxa: Write, value: float, period: float) -> None:
         path = vxa(StopConditionType=3, StopConditionValue=value, TempPeriod=period, TempEnabled=0)
-        with pytest.raises(InputError, match=r"(StopConditionValue|TempPeriod): expected a number above 0"):
+        with pytest.raises(InputError, match=r"above 0, found") as caught:
             simulator(path)
+        assert caught.value.key == (
+            "Simulator/StopCondition/StopConditionValue" if value <= 0 else "Environment/Thermal/TempPeriod"
+        )
 
-    def test_an_npz_file_brings_none(self, tmp_path: Path) -> None:
+    def test_an_npz_file_has_no_settings(self, tmp_path: Path) -> None:
         assert Vox.settings_of(tmp_path / "no.npz") is None
 
-    def test_another_ending_is_refused(self, tmp_path: Path) -> None:
+    def test_another_file_name_extension_is_rejected(self, tmp_path: Path) -> None:
         assert Vox.settings_of(tmp_path / "a.vxd") is None
-        with pytest.raises(InputError, match=r"a\.vxd: vox reads \.npz and \.vxa files"):
+        with pytest.raises(InputError, match=r"\.npz .*\.vxa") as caught:
             Vox().read(tmp_path / "a.vxd")
+        assert caught.value.source == str(tmp_path / "a.vxd")
 
 
-class TestRefusals:
-    """What is on in the file and not in vox, by tag and value."""
+class TestErrors:
+    """Errors for features that vox lacks, with tag and value."""
 
     @pytest.mark.parametrize(
         ("tag", "value", "named"),
@@ -294,17 +298,17 @@ class TestRefusals:
             ("EquilibriumModeEnabled", "1", "Simulator/EquilibriumMode/EquilibriumModeEnabled = '1'"),
             ("MinTempFact", "0.2", "Simulator/MinTempFact = '0.2'"),
             ("Integrator", "1", "Simulator/Integration/Integrator = '1'"),
-            ("ColSystem", "0", "Simulator/Collisions/ColSystem = '0' (vox searches as 3 does)"),
+            ("ColSystem", "0", "Simulator/Collisions/ColSystem = '0' (expected 3)"),
             ("StopConditionType", "0", "StopCondition/StopConditionType = '0'"),
-            ("StopConditionType", "4", "StopCondition/StopConditionType = '4' (vox stops after a time"),
-            ("ActuationStartTime", "0.1", "ActuationStartTime = '0.1' (later than InitCmTime)"),
-            ("VaryTempEnabled", "0", "Thermal/VaryTempEnabled = '0' (with TempEnabled = 1, a constant"),
+            ("StopConditionType", "4", "StopCondition/StopConditionType = '4' ("),
+            ("ActuationStartTime", "0.1", "ActuationStartTime = '0.1' ("),
+            ("VaryTempEnabled", "0", "Thermal/VaryTempEnabled = '0' ("),
             ("ForceX", "3", "Environment/Boundary_Conditions/FRegion 1/ForceX = '3'"),
             ("TorqueZ", "-1", "FRegion 1/TorqueZ = '-1'"),
             ("DisplaceY", "1e-3", "FRegion 1/DisplaceY = '1e-3'"),
             ("AngDisplaceX", "1", "FRegion 1/AngDisplaceX = '1'"),
-            ("PrimType", "1", "FRegion 1/PrimType = '1' (a cylinder: vox knows boxes)"),
-            ("PrimType", "2", "FRegion 1/PrimType = '2' (a sphere: vox knows boxes)"),
+            ("PrimType", "1", "FRegion 1/PrimType = '1' (a cylinder"),
+            ("PrimType", "2", "FRegion 1/PrimType = '2' (a sphere"),
             ("GrowthAmplitude", "0.5", "Environment/GrowthAmplitude = '0.5'"),
             ("RegenerationModelUpdatesPerTempCycle", "4", "RegenerationModelUpdatesPerTempCycle = '4'"),
             ("ControllerUpdatesPerTempCycle", "4", "Controller/ControllerUpdatesPerTempCycle = '4'"),
@@ -320,7 +324,7 @@ class TestRefusals:
             ("numControllerSynapses", "18", "VXC/Structure/numControllerSynapses = '18'"),
         ],
     )
-    def test_name_tag_and_value(self, vxa: Write, tag: str, value: str, named: str) -> None:
+    def test_contain_tag_and_value(self, vxa: Write, tag: str, value: str, named: str) -> None:
         self.assert_only_this_is_named(vxa(**{tag: value}), named)
 
     @pytest.mark.parametrize(
@@ -329,33 +333,34 @@ class TestRefusals:
             ("<Features>", "<VolumeEffectsEnabled>1</VolumeEffectsEnabled>", "VolumeEffectsEnabled = '1'"),
             ("<Features>", "<BlendingEnabled>1</BlendingEnabled>", "Features/BlendingEnabled = '1'"),
             ("<Features>", "<MaxVelLimitEnabled>1</MaxVelLimitEnabled>", "MaxVelLimitEnabled = '1'"),
-            ("</GA>", "<ParentsWanted>2</ParentsWanted>", "ParentsWanted = '2' (unknown to vox)"),
+            ("</GA>", "<ParentsWanted>2</ParentsWanted>", "ParentsWanted = '2' (unknown tag)"),
             ("<Environment>", "<FloorRadius>4</FloorRadius>", "Environment/FloorRadius = '4'"),
             ("<Environment>", "<Sources><Source/></Sources>", "Environment/Sources = ''"),
-            ("<Environment>", "<Wind><A>0</A><B>3</B></Wind>", "Environment/Wind = '0 3' (unknown to vox)"),
-            ('<VXA Version="1.0">', "<GPU><Use>1</Use></GPU>", "GPU = '1' (unknown to vox)"),
+            ("<Environment>", "<Wind><A>0</A><B>3</B></Wind>", "Environment/Wind = '0 3' (unknown tag)"),
+            ('<VXA Version="1.0">', "<GPU><Use>1</Use></GPU>", "GPU = '1' (unknown tag)"),
             ("</Data>", "<Stiffness><Layer>5, 5, </Layer></Stiffness>", "VXC/Structure/Stiffness = '5, 5,'"),
             ("</Data>", "<FinalPhaseOffset/>", "VXC/Structure/FinalPhaseOffset = ''"),
             ("</Data>", "<InitialVoxelSize/>", "VXC/Structure/InitialVoxelSize = ''"),
             (
                 "<Environment>",
                 "<Fixed_Regions><NumFixed>1</NumFixed><FRegion/></Fixed_Regions>",
-                "Environment/Fixed_Regions = regions (beside Boundary_Conditions)",
+                "Environment/Fixed_Regions = regions (",
             ),
         ],
     )
-    def test_name_what_the_template_has_not(self, vxa: Write, after: str, more: str, named: str) -> None:
+    def test_contain_tags_that_the_template_lacks(
+        self, vxa: Write, after: str, more: str, named: str
+    ) -> None:
         self.assert_only_this_is_named(vxa(after={after: more}), named)
 
     def assert_only_this_is_named(self, path: Path, named: str) -> None:
         with pytest.raises(InputError) as caught:
             Vox.settings_of(path)
-        head, refusals = str(caught.value).split(" simulate: ")
-        assert head == f"{path}: asks for what vox does not"
-        assert named in refusals
-        assert ";" not in refusals
+        assert caught.value.source == str(path)
+        assert named in caught.value.problem
+        assert caught.value.problem.count(" = '") + caught.value.problem.count(" = regions") == 1
 
-    def test_name_all_of_it_at_once(self, vxa: Write) -> None:
+    def test_report_all_tags_together(self, vxa: Write) -> None:
         path = vxa(GrowthAmplitude=1, PrimType=2, MatModel=1, ColSystem=1, StopConditionType=6, TorqueX=1)
         with pytest.raises(InputError) as caught:
             read_vxa(path)
@@ -363,22 +368,20 @@ class TestRefusals:
         assert all(tag in str(caught.value) for tag in named)
 
     @pytest.mark.parametrize("compression", ["ZLIB", "BASE64", "QT_ZLIB", ""])
-    def test_name_another_way_to_write_the_structure(self, vxa: Write, compression: str) -> None:
+    def test_contain_another_encoding_of_the_structure(self, vxa: Write, compression: str) -> None:
         path = vxa()
         path.write_text(path.read_text().replace('"ASCII_READABLE"', f'"{compression}"'))
-        with pytest.raises(
-            InputError, match=rf"VXC/Structure Compression = '{compression}' \(vox reads ASCII"
-        ):
+        with pytest.raises(InputError, match=rf"VXC/Structure Compression = '{compression}' \(.*ASCII"):
             read_vxa(path)
 
-    def test_name_another_version_of_the_structure(self, vxa: Write) -> None:
+    def test_contain_another_version_of_the_structure(self, vxa: Write) -> None:
         path = vxa()
         path.write_text(path.read_text().replace('VXC Version="0.93"', 'VXC Version="0.92"'))
-        with pytest.raises(InputError, match=r"VXC Version = '0\.92' \(vox reads 0\.93 and 0\.94\)"):
+        with pytest.raises(InputError, match=r"VXC Version = '0\.92' \(.*0\.93 .* 0\.94\)"):
             read_vxa(path)
 
 
-def test_a_design_is_what_the_file_has() -> None:
+def test_a_design_equals_the_contents_of_the_file() -> None:
     for name in ("template", "evosoro", "voxcad"):
         file = read_vxa(EXAMPLES / f"{name}.vxa")
         [(_, design)] = simulator(EXAMPLES / f"{name}.vxa").read(EXAMPLES / f"{name}.vxa")

@@ -1,4 +1,4 @@
-"""The reference cases through VXA files: exported, read again, simulated as the original engine did."""
+"""Reference cases of the engine, exported to VXA files, read again and simulated."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BASE = 25.0
 
 
 def simulator(case: dict[str, Any], *, clamped: bool) -> Vox:
-    """Return the simulator of a reference case, whose settings have the solver's names."""
+    """Return the simulator for a reference case, whose settings use the names of the solver."""
     options = dict(case["settings"])
     palette = tuple(
         PaletteMaterial(code=int(code), expansion_coefficient=material.pop("expansion"), **material)
@@ -42,12 +42,12 @@ def largest(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     return float(np.nanmax(np.abs(a - b)))
 
 
-def test_all_cases_are_there() -> None:
+def test_all_cases_exist() -> None:
     assert [name[:2] for name in CASES] == [f"{n:02}" for n in range(1, 19)]
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_motion_is_the_engines(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_motion_agrees_with_the_engine(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with np.load(ENVIRONMENT / f"{name}.npz") as file:
         golden = dict(file)
     case = json.loads(str(golden["case"]))
