@@ -49,13 +49,13 @@ def _measured(role: str, mutations: int, effort: Effort) -> tuple[str | float, .
     )
     genomes = RandomSearchRun(pool, effort.designs, mutations).ask()
     points = _points(inputs)
-    ours = [pool.express(genome) for genome in genomes]
-    theirs = [neat.nn.FeedForwardNetwork.create(genome, pool.config) for genome in genomes]
-    _compare(ours, theirs, points)
+    compiled = [pool.express(genome) for genome in genomes]
+    reference = [neat.nn.FeedForwardNetwork.create(genome, pool.config) for genome in genomes]
+    _compare(compiled, reference, points)
     actions: dict[str, Action] = {
         "compiled": lambda: [pool.express(genome) for genome in genomes],
-        "evaluated": lambda: [network(points) for network in ours],
-        "neat-python": lambda: [_activated(network, points) for network in theirs],
+        "evaluated": lambda: [network(points) for network in compiled],
+        "neat-python": lambda: [_activated(network, points) for network in reference],
     }
     taken = {name: 1e6 * time / len(genomes) for name, time in interleaved(actions, effort).items()}
     return (
@@ -79,7 +79,7 @@ def _activated(network: Any, points: NDArray[np.float64]) -> list[list[float]]:
     return [network.activate(point) for point in points.tolist()]
 
 
-def _compare(ours: Sequence[CppnNetwork], theirs: Sequence[Any], points: NDArray[np.float64]) -> None:
-    for mine, other in zip(ours, theirs, strict=True):
-        if not np.allclose(mine(points), _activated(other, points), rtol=1e-9, atol=1e-9):
+def _compare(compiled: Sequence[CppnNetwork], reference: Sequence[Any], points: NDArray[np.float64]) -> None:
+    for network, other in zip(compiled, reference, strict=True):
+        if not np.allclose(network(points), _activated(other, points), rtol=1e-9, atol=1e-9):
             raise SectionError("outputs differ from those of neat-python, so the times are not comparable")

@@ -191,6 +191,13 @@ class TestPlan:
         assert len(planned.to_run) == 4
         assert planned.to_run[0].cell.config.run.generations == 3
 
+    def test_has_whole_runs_on_each_core(self, toy_study: Read, tmp_path: Path) -> None:
+        planned = plan_study(toy_study("runs=3", "grid={collaboration.n=[1]}"), out=tmp_path / "there")
+        core_time = planned.estimate.seconds
+        for cores, share in ((1, 1), (2, 2 / 3), (3, 1 / 3)):
+            assert attrs.evolve(planned, cores=cores).seconds == pytest.approx(core_time * share)
+        assert attrs.evolve(planned, to_run=()).seconds == 0.0
+
     def test_takes_a_whole_grid_in_place_of_that_of_the_study(self) -> None:
         planned = plan_study("small", runs=2, grid={"aggregator": ["hm"]})
         assert planned.found.study.grid == {"aggregator": ("hm",)}

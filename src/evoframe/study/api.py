@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import heapq
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -74,13 +75,22 @@ class StudyPlan:
         found: The current state of the study.
         to_run: The runs to start or resume.
         cores: Number of cores in use.
-        estimate: Time and disk space of these runs.
+        estimate: Core time and disk space of these runs.
     """
 
     found: StudyResult
     to_run: tuple[Planned, ...]
     cores: int
     estimate: Estimate
+
+    @property
+    def seconds(self) -> float:
+        """Estimated wall clock of these runs, s, each of which occupies one core."""
+        pairs = sum(run.cell.pairs for run in self.to_run)
+        ends = [0.0] * self.cores
+        for run in self.to_run:
+            heapq.heapreplace(ends, ends[0] + self.estimate.seconds * run.cell.pairs / pairs)
+        return max(ends)
 
 
 def run_study(  # noqa: PLR0913 - all but the first are keywords

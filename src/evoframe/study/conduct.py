@@ -67,7 +67,7 @@ def claim(study: Study, directory: Path) -> None:
         raise InputError(
             f"cannot create the directory of a study: {error.strerror}", source=directory
         ) from error
-    refuse_another(study, directory)  # before the lock, which would write to somebody else's directory
+    refuse_another(study, directory)  # before the lock, which writes to the directory
     with lock_tables(directory):
         refuse_another(study, directory)  # again: another process may have been faster
         write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
