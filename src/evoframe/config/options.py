@@ -12,7 +12,8 @@ import docstring_parser
 
 __all__ = ["Option", "options_of", "summary_of"]
 
-_BOUND = re.compile(r"\bx ([<>]=?) (-?[0-9][-+.e0-9]*)|\band ([<>]=?) (-?[0-9][-+.e0-9]*)")
+_BOUND = re.compile(r"<Validator for x (.+?)>(?=[,)\s]|$)")
+_NUMBER = re.compile(r"(?<=[<>=] )\S+")
 _CHOICES = re.compile(r"options \((.*?)\)")
 _NAMES = {bool: "true or false", int: "whole number", float: "number", str: "text"}
 
@@ -105,7 +106,6 @@ def _range(validator: Any) -> str:
 
 def _stated(text: str) -> Iterator[str]:
     for match in _BOUND.finditer(text):
-        operator, bound = match.group(1) or match.group(3), match.group(2) or match.group(4)
-        yield f"{operator} {float(bound):g}"
+        yield _NUMBER.sub(lambda number: f"{float(number.group()):g}", match.group(1))
     for match in _CHOICES.finditer(text):
         yield f"one of {match.group(1).replace(chr(39), '')}"

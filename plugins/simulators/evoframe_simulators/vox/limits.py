@@ -5,7 +5,7 @@ The ranges of numbers come from the solver's own table.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import attrs
@@ -21,10 +21,10 @@ __all__ = [
     "MOST_STEPS",
     "VALID_PROPERTY",
     "VALID_SETTING",
+    "InRange",
     "check_distinct",
     "check_finite",
     "check_printable",
-    "in_range",
 ]
 
 LARGEST_CODE = 255
@@ -43,20 +43,25 @@ MOST_STEPS = 2**53
 """Largest number of steps in a simulation; a ``float`` holds all smaller integers exactly."""
 
 
-def in_range(span: libvox.Range) -> Callable[[Any, attrs.Attribute[Any], float], None]:
-    """Return a validator that rejects numbers outside a range of the solver."""
+@attrs.frozen(repr=False)
+class InRange:
+    """An attrs validator that rejects numbers outside a range of the solver."""
 
-    def check(_: Any, attribute: attrs.Attribute[Any], value: float) -> None:
-        if value not in span:
-            raise ValueError(f"'{attribute.name}' must be {span.words}: {value}")
+    span: libvox.Range
 
-    return check
+    def __call__(self, _: Any, attribute: attrs.Attribute[Any], value: float) -> None:
+        """Check a value."""
+        if value not in self.span:
+            raise ValueError(f"'{attribute.name}' must be {self.span.words}: {value}")
+
+    def __repr__(self) -> str:
+        return f"<Validator for x {self.span.words}>"
 
 
-VALID_SETTING = {name: in_range(span) for name, span in libvox.SETTING_RANGES.items()}
+VALID_SETTING = {name: InRange(span) for name, span in libvox.SETTING_RANGES.items()}
 """Validator of each number among the solver's settings, by the solver's name."""
 
-VALID_PROPERTY = {name: in_range(span) for name, span in libvox.PROPERTY_RANGES.items()}
+VALID_PROPERTY = {name: InRange(span) for name, span in libvox.PROPERTY_RANGES.items()}
 """Validator of each property of a material, by the solver's name."""
 
 

@@ -34,7 +34,7 @@ from evoframe_simulators.vox.sampling import check_samples
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
 from evoframe_simulators.vox.simulation import simulate
 from evoframe_simulators.vox.tracks import POINTS, check_tracks
-from evoframe_simulators.vox.verification import changes
+from evoframe_simulators.vox.verification import MEANINGS, changes
 from evoframe_simulators.vox.vxa import left_out, read_vxa, write_vxa
 
 __all__ = ["Vox"]
@@ -98,7 +98,7 @@ class Vox(VoxSettings):
         """
         check_design(design)
         try:
-            return [Variant(*change) for change in changes(self, design, record)]
+            return [Variant(*change, *MEANINGS[change[0]]) for change in changes(self, design, record)]
         except ValueError as error:  # the solver rejects the values of cells
             raise InputError(strip_body_index(error)) from error
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
 import attrs
@@ -14,12 +14,21 @@ from evoframe_simulators.vox.limits import MOST_STEPS
 from evoframe_simulators.vox.models import clock_of
 from evoframe_simulators.vox.settings import VoxSettings
 
-__all__ = ["changes"]
+__all__ = ["MEANINGS", "changes"]
 
 S = TypeVar("S", bound=VoxSettings)
 
 _DRAWS = 10
 _JITTER = 0.01
+MEANINGS: Mapping[str, tuple[str, str]] = {
+    "contraction off": ("does not come from contraction", "comes from contraction"),
+    "self collision off": ("does not depend on self collision", "depends on self collision"),
+    "half the time step": ("does not depend on the time step", "depends on the time step"),
+    "twice the duration": ("lasts over twice the duration", "is a moment, not a posture"),
+    "offsets jittered by 1 %": ("tolerates errors of the offsets", "needs exact offsets"),
+}
+"""Name of a change -> what it means that the score is kept, and that it is lost."""
+
 _SEED = 20251024  # of all jitter, so that a verification is reproducible
 
 

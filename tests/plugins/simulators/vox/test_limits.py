@@ -49,7 +49,7 @@ def spans(draw: st.DrawFn) -> libvox.Range:
 def test_a_value_is_accepted_if_and_only_if_it_is_in_the_range(
     span: libvox.Range, data: st.DataObject
 ) -> None:
-    holding = holder(limits.in_range(span))
+    holding = holder(limits.InRange(span))
     value = data.draw(st.floats() | st.integers() | st.sampled_from([span.lower, span.upper]))
     if value in span:
         assert holding(value).value == value
