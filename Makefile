@@ -1,10 +1,10 @@
-# What a person types. Each target sets up what it needs; nothing has to be activated.
+# Commands for people. Each target sets up what it requires; nothing has to be activated.
 
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SECONDS ?= 30 # of fuzzing
-C := $(filter-out $(wildcard lib*/evoframe_*/*.c),$(wildcard lib*/*.[ch] lib*/*/*.[ch])) # but for cffi's
+C := $(filter-out $(wildcard lib*/evoframe_*/*.c),$(wildcard lib*/*.[ch] lib*/*/*.[ch])) # without the files that cffi generates
 SOURCES := pyproject.toml setup.py extensions.py $(C) $(wildcard lib*/*/*.py)
 PARALLEL := --numprocesses auto --dist worksteal
 
@@ -34,7 +34,7 @@ lint: $(VENV)/developing
 types: $(VENV)/developing
 	$(BIN)/mypy
 
-## imports: who may import whom
+## imports: layers of packages
 imports: $(VENV)/developing
 	$(BIN)/lint-imports
 
@@ -47,13 +47,13 @@ unit: $(VENV)/developing
 
 ## lowest: the tests, with the lowest version of each dependency that pyproject.toml allows
 lowest: $(LOWEST)/developing
-	$(LOWEST)/bin/python -m pytest -W ignore::DeprecationWarning $(PARALLEL) # old releases use what newer ones deprecate
+	$(LOWEST)/bin/python -m pytest -W ignore::DeprecationWarning $(PARALLEL) # old releases use deprecated functions of newer ones
 
 ## browser: the pages of reports, in Chromium
 browser: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/browser/browser.sh
 
-## sanitize: the C libraries and their tests under the address and undefined-behaviour sanitizers
+## sanitize: the C libraries and their tests under the address and undefined-behavior sanitizers
 sanitize: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/sanitize.sh
 
@@ -61,7 +61,7 @@ sanitize: $(VENV)/developing
 interpreters: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
 
-## fuzz: SECONDS of inputs that nobody would write, for libvox, the reader of VXA files and that of configurations
+## fuzz: SECONDS of random inputs for libvox and the readers of VXA files and configurations
 fuzz: $(VENV)/fuzzing
 	PYTHON=$(BIN)/python tests/fuzz/fuzz.sh $(SECONDS)
 
@@ -72,7 +72,7 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/installed: $(BIN)/python $(SOURCES)
-	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' # the first to know dependency groups
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1' # first version with dependency groups
 	$(BIN)/python -m pip install --quiet --editable '.[report]'
 	touch $@
 
@@ -80,7 +80,7 @@ $(VENV)/developing: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --group dev
 	touch $@
 
-# Without isolation, so that the C libraries are built with the lowest versions too.
+# Without isolation, so that the C libraries are also built with the lowest versions.
 $(LOWEST)/developing: $(VENV)/developing
 	$(BIN)/uv venv --quiet --clear --python $(BIN)/python $(LOWEST)
 	$(BIN)/uv pip install --quiet --python $(LOWEST) --resolution lowest-direct \
