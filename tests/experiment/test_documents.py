@@ -35,6 +35,20 @@ def test_the_python_of_the_page_on_robustness_runs(tmp_path: Path) -> None:
     assert (tmp_path / "robustness" / "violins.pdf").is_file()
 
 
+def test_the_python_of_the_pages_on_studies_and_reports_runs(tmp_path: Path) -> None:
+    blocks = {
+        page: re.findall(r"```python\n(.*?)```", (ROOT / "docs" / page).read_text(), re.DOTALL)
+        for page in ("studies.md", "reports.md")
+    }
+    [study], [report] = blocks.values()
+    (tmp_path / "study.py").write_text(study)  # processes of runs import it
+    (tmp_path / "report.py").write_text(report.replace("studies/paper", "studies/few"))
+    for name in ("study.py", "report.py"):
+        ran = python(tmp_path / name, directory=tmp_path)
+        assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "article" / "report.html").is_file()
+
+
 def test_the_configuration_of_the_readme_is_valid(tmp_path: Path) -> None:
     [block] = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
     path = tmp_path / "mine.toml"
