@@ -1,4 +1,4 @@
-"""Tables of a study have a line for each group, pair and ranking."""
+"""Tests of the tables of a study."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_each_view_is_compared_on_both_yardsticks() -> None:
     assert {each.comparison.correction for each in found if each.comparison} == {"none"}
 
 
-def test_a_line_of_the_summary_describes_a_group() -> None:
+def test_the_summary_has_a_line_for_each_group() -> None:
     table = summary_table(comparisons(data("am", "wm")), "m")
     [row] = table[
         (table["view"] == "n = 2") & (table["group"] == "WM") & (table["yardstick"] == "score")
@@ -58,7 +58,7 @@ def test_a_line_of_the_summary_describes_a_group() -> None:
     assert row["letters"]
 
 
-def test_all_pairs_are_there_from_the_best_down() -> None:
+def test_pairs_are_complete_and_sorted_from_the_best_down() -> None:
     found = comparisons(data("am", "wm", "gm"))
     pairs, rankings = pairs_table(found), ranking_table(found)
     within = pairs[(pairs["view"] == "n = 2") & (pairs["yardstick"] == "score")]
@@ -72,13 +72,32 @@ def test_all_pairs_are_there_from_the_best_down() -> None:
     assert ranking.startswith("GM ")
 
 
-def test_one_group_is_described_and_not_compared() -> None:
+def test_a_single_group_is_described_but_not_compared() -> None:
     found = comparisons(data("am"))[:1]
     assert found[0].comparison is None
     assert list(summary_table(found)["letters"]) == [""]
     for table in (pairs_table(found), ranking_table(found)):
         assert table.empty
         assert {"view", "yardstick"} < set(table.columns)
+
+
+def test_groups_of_fewer_than_five_runs_have_no_p_values() -> None:
+    found = comparisons(data("am", "wm", runs=4))
+    assert pairs_table(found)["Dunn p"].isna().all()
+    assert set(pairs_table(found)["A12"]) <= {0.5, 1.0}
+    assert ranking_table(found)[["Kruskal-Wallis H", "p"]].isna().all(axis=None)
+    assert ranking_table(found)["ranking"][0] == "WM, AM"
+    assert set(summary_table(found)["letters"]) == {""}
+    assert comparisons(data("am", "wm", runs=5))[0].comparison is not None
+    assert not pairs_table(comparisons(data("am", "wm", runs=5)))["Dunn p"].isna().any()
+
+
+def test_groups_of_one_run_are_not_compared() -> None:
+    found = comparisons(data("am", "wm", runs=1))
+    assert {each.comparison for each in found} == {None}
+    assert len(summary_table(found)) == sum(len(each.groups) for each in found) > 2
+    assert pairs_table(found).empty
+    assert ranking_table(found).empty
 
 
 def test_versions_are_leaves_of_the_provenance() -> None:

@@ -1,4 +1,4 @@
-"""Findings are written beside the scores, and as JSON for a program."""
+"""Tests of the files of findings, and of their JSON."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def test_tables_in_json_are_those_of_the_files(tmp_path: Path) -> None:
     document = json.loads(json.dumps(as_json(found), allow_nan=False))
     for name, rows in document["tables"].items():
         with (tmp_path / "r" / f"{name}.csv").open() as file:
-            told = list(csv.DictReader(file))
-        assert [[*row] for row in told] == [[*row] for row in rows]
-        for line, row in zip(told, rows, strict=True):
+            lines = list(csv.DictReader(file))
+        assert [[*row] for row in lines] == [[*row] for row in rows]
+        for line, row in zip(lines, rows, strict=True):
             for key, value in row.items():
                 assert line[key] == ("" if value is None else str(value))
 
 
-def test_what_is_missing_is_none() -> None:
+def test_missing_values_are_none() -> None:
     table = pd.DataFrame({"a": [1.5, float("nan")], "b": ["x", None]})
     assert records(table) == [{"a": 1.5, "b": "x"}, {"a": None, "b": None}]

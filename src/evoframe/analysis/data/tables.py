@@ -1,4 +1,4 @@
-"""The tables of a study, for a spreadsheet and for an article."""
+"""Tables of studies, verifications and versions."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ _WHERE = ("view", "yardstick")
 
 @attrs.frozen
 class Compared:
-    """A view on one yardstick.
+    """A view compared on one yardstick.
 
     Attributes:
-        view: The groups.
-        yardstick: What they are compared by.
-        groups: How their values lie.
-        comparison: Of the groups, if there is more than one.
+        view: The groups of runs.
+        yardstick: The compared measure.
+        groups: Descriptive statistics of each group.
+        comparison: Comparison of the groups; ``None`` for a single group, or if each group has one run.
     """
 
     view: View
@@ -45,24 +45,25 @@ class Compared:
 
     @property
     def where(self) -> dict[str, str]:
-        """The cells of a table that say what a line is about."""
+        """The cells that identify the comparison in a line of a table."""
         return {"view": self.view.title, "yardstick": self.yardstick}
 
 
 def comparisons(data: StudyData, correction: Correction = "holm") -> list[Compared]:
-    """Return what is to be said of each view on each yardstick."""
+    """Compare the groups of each view on each yardstick."""
     found = []
     for yardstick in YARDSTICKS:
         for view in data.views(yardstick):
             values = view.values(yardstick)
-            comparison = compare(values, correction) if len(values) > 1 else None
+            testable = len(values) > 1 and max(map(len, values.values())) > 1
+            comparison = compare(values, correction) if testable else None
             groups = comparison.groups if comparison else ranked(values)
             found.append(Compared(view, yardstick, groups, comparison))
     return found
 
 
 def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
-    """Return a line for each group: how its values lie, and its letters."""
+    """Return a line for each group: its descriptive statistics and its letters."""
 
     def with_unit(name: str) -> str:
         return f"{name} ({unit})" if unit else name
@@ -89,13 +90,13 @@ def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
 
 
 def pairs_table(found: Sequence[Compared]) -> pd.DataFrame:
-    """Return a line for each pair of groups: Dunn's p, and how often the first is the greater."""
+    """Return a line for each pair of groups: Dunn's p and A12; no p for groups of fewer than five runs."""
     lines = [
         {
             **each.where,
             "first": pair.first,
             "second": pair.second,
-            "Dunn p": pair.p,
+            "Dunn p": pair.p if each.comparison.tested else None,
             "correction": each.comparison.correction,
             "A12": pair.a12,
         }
@@ -107,13 +108,13 @@ def pairs_table(found: Sequence[Compared]) -> pd.DataFrame:
 
 
 def ranking_table(found: Sequence[Compared]) -> pd.DataFrame:
-    """Return a line for each view and yardstick: Kruskal-Wallis, and the ranking in the paper's notation."""
+    """Return a line for each view and yardstick: Kruskal-Wallis test and ranking in the paper's notation."""
     lines = [
         {
             **each.where,
             "ranking": each.comparison.ranking,
-            "Kruskal-Wallis H": each.comparison.h,
-            "p": each.comparison.p,
+            "Kruskal-Wallis H": each.comparison.h if each.comparison.tested else None,
+            "p": each.comparison.p if each.comparison.tested else None,
             "epsilon squared": each.comparison.epsilon_squared,
         }
         for each in found
@@ -123,7 +124,7 @@ def ranking_table(found: Sequence[Compared]) -> pd.DataFrame:
 
 
 def verification_table(verification: Verification) -> pd.DataFrame:
-    """Return a line for each change: the median score with it, and its part of the unchanged score."""
+    """Return a line for each variant: its median score, and this score as a share of the unchanged one."""
     return pd.DataFrame(
         [
             {
@@ -139,7 +140,7 @@ def verification_table(verification: Verification) -> pd.DataFrame:
 
 
 def versions_table(provenance: Mapping[str, Any]) -> pd.DataFrame:
-    """Return a line for each thing that a run says it was made by; none if it says nothing."""
+    """Return a line for each entry of a run's provenance, such as versions; none without provenance."""
     found = [
         (key, ", ".join(map(str, value)) if isinstance(value, list) else str(value))
         for key, value in (leaves(provenance) if provenance else ())

@@ -1,4 +1,4 @@
-"""What axes are called, and in which unit numbers are shown."""
+"""Titles of axes and columns, and the units in which reports show numbers."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from evoframe.analysis.data.studies import Yardstick
 
 __all__ = ["NAMES", "axis_title", "factor_of", "with_unit"]
 
-NAMES: Mapping[Yardstick, str] = {"score": "best pair simulated", "fitness": "best fitness"}
+NAMES: Mapping[Yardstick, str] = {"score": "score of the best pair", "fitness": "best fitness"}
 
 
 def factor_of(unit: str) -> float:
-    """Return what values in *unit* are multiplied by to be shown: displacements are millimetres."""
+    """Return the factor from *unit* to the unit of reports: meters become millimeters."""
     return 1000.0 if unit == "m" else 1.0
 
 
@@ -22,6 +22,6 @@ def axis_title(name: str, unit: str) -> str:
     return f"{name}{shown}"
 
 
-def with_unit(value: float, unit: str) -> str:
-    """Return a value as it is told: ``5.041 mm``."""
-    return f"{value * factor_of(unit):.4g} {'mm' if unit == 'm' else unit}".rstrip()
+def with_unit(value: float, unit: str, digits: int = 4) -> str:
+    """Return a value with its unit, as in ``5.041 mm``."""
+    return f"{value * factor_of(unit):.{digits}g} {'mm' if unit == 'm' else unit}".rstrip()

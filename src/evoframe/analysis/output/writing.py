@@ -1,4 +1,4 @@
-"""Figures and tables as files: the same content gives the same bytes, with nothing of the time in them."""
+"""Figures and tables as files; the same content gives the same bytes, without timestamps."""
 
 from __future__ import annotations
 
@@ -23,33 +23,35 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "png": {"metadata": {"Software": None}, "dpi": 300},
 }
 
-_SIGNS = str.maketrans({"<": r"\textless{}", ">": r"\textgreater{}"})  # others in LaTeX's usual fonts
+_SIGNS = str.maketrans(
+    {"<": r"\textless{}", ">": r"\textgreater{}"}
+)  # printed as other characters by LaTeX's default fonts
 
 
 def prepare_directory(directory: Path) -> Path:
-    """Make a directory for a report, if it is not there, and see that it can be written to.
+    """Create a directory for a report unless it exists, and check that it is writable.
 
     Raises:
-        InputError: It cannot be made, or not be written to.
+        InputError: The directory cannot be created, or is not writable.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=directory):
             pass
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a report: {error.strerror}") from error
+        raise InputError(f"cannot be used for a report: {error.strerror}", source=directory) from error
     return directory
 
 
 def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
-    """Return a figure as PDF, SVG and PNG, with the same layout in each: name of a file -> its bytes.
+    """Return a figure as PDF, SVG and PNG with the same layout: file name -> bytes.
 
     Args:
-        figure: What is drawn.
-        name: Name of the files, without an ending. It makes the ids in an SVG file its own.
+        figure: The figure.
+        name: Name of the files without extension. The ids in the SVG file depend on it.
     """
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # else it is arranged anew for each format, and slightly otherwise
+    figure.set_layout_engine("none")  # otherwise each format gets a slightly different layout
     files = {}
     for ending, options in _FORMATS.items():
         data = io.BytesIO()
@@ -78,10 +80,10 @@ def write_files(files: Mapping[str, bytes], directory: Path) -> list[Path]:
 
     Args:
         files: Name -> bytes.
-        directory: Where to; it is there.
+        directory: An existing directory.
 
     Raises:
-        RunError: One of them cannot be written.
+        RunError: A file cannot be written.
     """
     for name, data in files.items():
         write_atomically(directory / name, data)

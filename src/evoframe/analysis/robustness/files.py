@@ -1,4 +1,4 @@
-"""What was made of a measurement, in files: figure, tables and conclusions, beside its scores."""
+"""Files of a measurement: its figure, tables and conclusions, written next to its scores."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ def write_robustness(found: Findings, directory: str | Path) -> list[Path]:
 
     Args:
         found: The measurement and its tests.
-        directory: Where to; files of an earlier measurement are replaced.
+        directory: Directory of the files; those of an earlier measurement are overwritten.
 
     Returns:
-        What was written.
+        The paths of the files.
 
     Raises:
-        InputError: The directory cannot be made.
-        RunError: It cannot be written.
+        InputError: The directory cannot be created, or is not writable.
+        RunError: A file cannot be written.
     """
     directory = prepare_directory(Path(directory))
     return [*write_measurement(found.measured, directory), *write_findings(found, directory)]
 
 
 def write_findings(found: Findings, directory: Path) -> list[Path]:
-    """Write the figure, tables and conclusions of a measurement, beside its scores.
+    """Write the figure, tables and conclusions of a measurement, but not its scores.
 
     Returns:
-        What was written.
+        The paths of the files.
 
     Raises:
-        RunError: It cannot be written.
+        RunError: A file cannot be written.
     """
     files = {"conclusions.txt": conclusions(found).encode()}
     for name, table in _all_tables(found).items():
@@ -72,6 +72,6 @@ def _all_tables(found: Findings) -> dict[str, pd.DataFrame]:
 
 
 def records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return the lines of a table as JSON values; ``None`` where there is none."""
+    """Return the lines of a table as JSON values; missing values become ``None``."""
     lines = table.astype(object).to_dict(orient="records")
     return [{key: None if pd.isna(value) else value for key, value in line.items()} for line in lines]
