@@ -89,7 +89,7 @@ def test_the_noun_of_values_can_be_chosen() -> None:
     groups = {"AM": NOISE[0], "WM": [value + 100 for value in NOISE[1]]}
     words = conclusion(compare(groups), "the score", ("body", "bodies"))
     assert "30 bodies" in words
-    assert "a body " in words
+    assert "pair of bodies" in words
     assert "run" not in words
 
 

@@ -98,7 +98,7 @@ class StudyData:
         return {key: self.values.get(key, {}).get(text, text) for key, text in row.settings.items()}
 
     def views(self, yardstick: Yardstick) -> list[View]:
-        """Return a view for each combination of all keys but the last, with a group for each value of the last.
+        """Return a view for each combination of all keys but the last, which distinguishes its groups.
 
         If there are several views, one more compares the best group of each: the one with the greatest mean
         rank on the *yardstick*, which is first in the ranking. Its name includes its view, as in

@@ -23,9 +23,7 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "png": {"metadata": {"Software": None}, "dpi": 300},
 }
 
-_SIGNS = str.maketrans(
-    {"<": r"\textless{}", ">": r"\textgreater{}"}
-)  # printed as other characters by LaTeX's default fonts
+_SIGNS = str.maketrans({"<": r"\textless{}", ">": r"\textgreater{}"})  # differ in LaTeX's default fonts
 
 
 def prepare_directory(directory: Path) -> Path:
