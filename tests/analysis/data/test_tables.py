@@ -10,11 +10,17 @@ import pytest
 from evoframe.analysis.data.studies import StudyData
 from evoframe.analysis.data.tables import (
     comparisons,
+    pairs_article,
     pairs_table,
+    ranking_article,
     ranking_table,
+    summary_article,
     summary_table,
+    verification_table,
     versions_table,
 )
+from evoframe.contract import Score
+from evoframe.record.verification import Finding, Verification
 from evoframe.study.rows import Row
 
 ROW = Row({}, 0, 1, "", "", 1.0, 1.0, 1.0, 1, 1, 1.0, "")
@@ -53,9 +59,31 @@ def test_the_summary_has_a_line_for_each_group() -> None:
         (table["view"] == "n = 2") & (table["group"] == "WM") & (table["yardstick"] == "score")
     ].to_dict(orient="records")
     assert row["runs"] == 6
-    assert row["median (m)"] == pytest.approx(1.025)
-    assert row["mean (m)"] == pytest.approx(math.fsum(1 + run / 100 for run in range(6)) / 6)
+    assert row["median (mm)"] == pytest.approx(1025)
+    assert row["mean (mm)"] == pytest.approx(1000 * math.fsum(1 + run / 100 for run in range(6)) / 6)
     assert row["letters"]
+
+
+def test_tables_for_articles_have_the_lines_of_the_tables() -> None:
+    found = comparisons(data("am", "wm", "gm"))
+    summary, pairs, ranking = summary_article(found, "m"), pairs_article(found), ranking_article(found)
+    assert list(summary["group"]) == list(summary_table(found)["group"])
+    [line] = summary[(summary["heading"] == "n = 2, best score") & (summary["group"] == "WM")].to_dict(
+        orient="records"
+    )
+    assert (line["median (mm)"], line["quartiles (mm)"]) == ("1025", "1012 to 1038")
+    assert [float(a12) for a12 in pairs["A12"]] == pytest.approx(list(pairs_table(found)["A12"]), abs=0.005)
+    assert list(ranking["ranking"]) == list(ranking_table(found)["ranking"])
+    small = comparisons(data("am", "wm", runs=4))
+    assert set(pairs_article(small)["Dunn p"]) == set(ranking_article(small)["p"]) == {"-"}
+    assert set(ranking_article(small)["H"]) == {"-"}
+
+
+def test_verifications_are_in_millimeters() -> None:
+    half = Finding("half", (Score(0.001),))
+    table = verification_table(Verification(Score(0.002), (half,), "m"))
+    assert list(table["median (mm)"]) == [2.0, 1.0]
+    assert list(table["of unchanged"]) == [1.0, 0.5]
 
 
 def test_pairs_are_complete_and_sorted_from_the_best_down() -> None:

@@ -69,7 +69,9 @@ def test_a_body_of_any_shape_overlaps_nothing_and_is_not_clipped(shape: tuple[in
     figure.draw_without_rendering()
     shown = extent_of(figure, np.concatenate([part.vertices[0] for part in geometry.parts]))
     [legend], [axes] = figure.legends, figure.axes
-    title, size, *letters = [text.get_window_extent() for text in (*figure.texts, *axes.texts)]
+    title, size = [text.get_window_extent() for text in figure.texts]
+    letters = [extent_of(figure, np.array([text.get_position_3d()])).padded(4) for text in axes.texts]  # type: ignore[attr-defined]
+    assert len(letters) == 3
     assert not any(other.overlaps(shown) for other in (title, size, legend.get_window_extent()))
     assert not title.overlaps(size)
     for box in (shown, title, size, *letters):

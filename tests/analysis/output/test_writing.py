@@ -32,6 +32,9 @@ def test_a_table_is_exact_for_programs_and_short_for_people() -> None:
     files = table_files(pd.DataFrame({"ranking": ["A > B"], "p": [0.123456789], "none": [None]}), "t")
     assert files["t.csv"] == b"ranking,p,none\nA > B,0.123456789,\n"
     assert rb"A \textgreater{} B & 0.1235 & - \\" in files["t.tex"]
+    short = table_files(pd.DataFrame({"p": [0.123456789]}), "t", pd.DataFrame({"p": ["0.12"]}))
+    assert short["t.csv"] == b"p\n0.123456789\n"
+    assert b"0.12 \\\\" in short["t.tex"]
 
 
 def test_files_are_written_under_their_names(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ def made(plugins: Plugins, tmp_path: Path) -> Run:
 def test_the_summary_has_the_recorded_results(made: Run, plugins: Plugins) -> None:
     draft = draft_of_run(made, plugins)
     rows = csv.DictReader(draft.files["summary.csv"].decode().splitlines())
-    figures = {row["figure"]: float(row["value (1)"]) for row in rows}
+    figures = {row["figure"]: float(row["value"]) for row in rows}
     last = {row["population"]: row for row in made.turns()}
     assert figures == {
         "best pair": made.champion().score,

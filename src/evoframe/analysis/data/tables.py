@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,6 +10,8 @@ import attrs
 import pandas as pd
 
 from evoframe.analysis.data.studies import YARDSTICKS, StudyData, View, Yardstick
+from evoframe.analysis.data.units import NAMES, axis_title, factor_of, in_unit
+from evoframe.analysis.output.latex import decimals, fixed, p_cell, quartiles_cell
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.groups import Comparison, Group, compare, ranked
 from evoframe.documents import leaves
@@ -17,8 +20,11 @@ from evoframe.record import Verification
 __all__ = [
     "Compared",
     "comparisons",
+    "pairs_article",
     "pairs_table",
+    "ranking_article",
     "ranking_table",
+    "summary_article",
     "summary_table",
     "verification_table",
     "versions_table",
@@ -48,6 +54,11 @@ class Compared:
         """The cells that identify the comparison in a line of a table."""
         return {"view": self.view.title, "yardstick": self.yardstick}
 
+    @property
+    def heading(self) -> str:
+        """The heading of the comparison in an article's table."""
+        return f"{self.view.title}, {NAMES[self.yardstick]}"
+
 
 def comparisons(data: StudyData, correction: Correction = "holm") -> list[Compared]:
     """Compare the groups of each view on each yardstick."""
@@ -64,22 +75,18 @@ def comparisons(data: StudyData, correction: Correction = "holm") -> list[Compar
 
 def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
     """Return a line for each group: its descriptive statistics and its letters."""
-
-    def with_unit(name: str) -> str:
-        return f"{name} ({unit})" if unit else name
-
-    return pd.DataFrame(
+    table = pd.DataFrame(
         [
             {
                 **each.where,
                 "group": group.name,
                 "runs": group.n,
                 "mean rank": group.mean_rank,
-                with_unit("mean"): group.mean,
-                with_unit("sd"): group.sd,
-                with_unit("median"): group.median,
-                with_unit("first quartile"): group.quartiles[0],
-                with_unit("third quartile"): group.quartiles[1],
+                "mean": group.mean,
+                "sd": group.sd,
+                "median": group.median,
+                "first quartile": group.quartiles[0],
+                "third quartile": group.quartiles[1],
                 "Shapiro-Wilk p": group.shapiro_p,
                 "letters": "" if each.comparison is None else each.comparison.letters[group.name],
             }
@@ -87,6 +94,65 @@ def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
             for group in each.groups
         ]
     )
+    return in_unit(table, ["mean", "sd", "median", "first quartile", "third quartile"], unit)
+
+
+def summary_article(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
+    """Return the summary for an article: medians, quartiles and letters."""
+    factor = factor_of(unit)
+    groups = [group for each in found for group in each.groups]
+    places = decimals(
+        factor * (group.quartiles[1] - group.quartiles[0]) / math.sqrt(group.n) for group in groups
+    )
+    return pd.DataFrame(
+        [
+            {
+                "heading": each.heading,
+                "group": group.name,
+                "runs": group.n,
+                axis_title("median", unit): fixed(factor * group.median, places),
+                axis_title("quartiles", unit): quartiles_cell(
+                    factor * group.quartiles[0], factor * group.quartiles[1], places
+                ),
+                "letters": "" if each.comparison is None else each.comparison.letters[group.name],
+            }
+            for each in found
+            for group in each.groups
+        ]
+    )
+
+
+def pairs_article(found: Sequence[Compared]) -> pd.DataFrame:
+    """Return the table of pairs for an article."""
+    lines = [
+        {
+            "heading": each.heading,
+            "first": pair.first,
+            "second": pair.second,
+            "Dunn p": p_cell(pair.p if each.comparison.tested else None),
+            "A12": f"{pair.a12:.2f}",
+        }
+        for each in found
+        if each.comparison is not None
+        for pair in each.comparison.pairs
+    ]
+    return pd.DataFrame(lines, columns=["heading", "first", "second", "Dunn p", "A12"])
+
+
+def ranking_article(found: Sequence[Compared]) -> pd.DataFrame:
+    """Return the table of rankings for an article."""
+    lines = [
+        {
+            "heading": each.heading,
+            "ranking": each.comparison.ranking,
+            "H": f"{each.comparison.h:.2f}" if each.comparison.tested else "-",
+            "p": p_cell(each.comparison.p if each.comparison.tested else None),
+            "epsilon squared": f"{each.comparison.epsilon_squared:.3f}",
+        }
+        for each in found
+        if each.comparison is not None
+    ]
+    return pd.DataFrame(lines, columns=["heading", "ranking", "H", "p", "epsilon squared"])
 
 
 def pairs_table(found: Sequence[Compared]) -> pd.DataFrame:
@@ -125,11 +191,11 @@ def ranking_table(found: Sequence[Compared]) -> pd.DataFrame:
 
 def verification_table(verification: Verification) -> pd.DataFrame:
     """Return a line for each variant: its median score, and this score as a share of the unchanged one."""
-    return pd.DataFrame(
+    table = pd.DataFrame(
         [
             {
                 "variant": finding.name,
-                f"median ({verification.unit or 1})": finding.median,
+                "median": finding.median,
                 "of unchanged": verification.share(finding),
                 "draws": len(finding.scores),
                 "diverged": len(finding.diverged_at),
@@ -137,6 +203,7 @@ def verification_table(verification: Verification) -> pd.DataFrame:
             for finding in verification.rows
         ]
     )
+    return in_unit(table, ["median"], verification.unit)
 
 
 def versions_table(provenance: Mapping[str, Any]) -> pd.DataFrame:

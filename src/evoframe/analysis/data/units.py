@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import pandas as pd
 
 from evoframe.analysis.data.studies import Yardstick
 
-__all__ = ["NAMES", "axis_title", "factor_of", "with_unit"]
+__all__ = ["NAMES", "axis_title", "factor_of", "in_unit", "with_unit"]
 
-NAMES: Mapping[Yardstick, str] = {"score": "score of the best pair", "fitness": "best fitness"}
+NAMES: Mapping[Yardstick, str] = {"score": "best score", "fitness": "best fitness"}
 
 
 def factor_of(unit: str) -> float:
@@ -17,9 +19,18 @@ def factor_of(unit: str) -> float:
 
 
 def axis_title(name: str, unit: str) -> str:
-    """Return the title of an axis of values in *unit*."""
+    """Return the title of an axis or column with its unit, as in ``best score (mm)``."""
     shown = {"m": " (mm)", "": ""}.get(unit, f" ({unit})")
     return f"{name}{shown}"
+
+
+def in_unit(table: pd.DataFrame, columns: Sequence[str], unit: str) -> pd.DataFrame:
+    """Return a table whose *columns* are converted from *unit* to the unit of reports, which titles name."""
+    shown = table.copy()
+    if unit == "m":
+        for column in columns:
+            shown[column] = [None if pd.isna(value) else value * 1000.0 for value in table[column]]
+    return shown.rename(columns={column: axis_title(column, unit) for column in columns})
 
 
 def with_unit(value: float, unit: str, digits: int = 4) -> str:

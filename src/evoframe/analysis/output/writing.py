@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
+from evoframe.analysis.output.latex import latex_table
 from evoframe.errors import InputError
 from evoframe.files import write_atomically
 
@@ -22,8 +23,6 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "svg": {"metadata": {"Date": None, "Creator": None}},
     "png": {"metadata": {"Software": None}, "dpi": 300},
 }
-
-_SIGNS = str.maketrans({"<": r"\textless{}", ">": r"\textgreater{}"})  # differ in LaTeX's default fonts
 
 
 def prepare_directory(directory: Path) -> Path:
@@ -59,18 +58,24 @@ def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
     return files
 
 
-def table_files(table: pd.DataFrame, name: str) -> dict[str, bytes]:
-    """Return a table as CSV, and as LaTeX (package booktabs) with four digits: name of a file -> its bytes.
+def table_files(
+    table: pd.DataFrame,
+    name: str,
+    article: pd.DataFrame | None = None,
+    by: Sequence[str] = (),
+    wrapped: str = "",
+) -> dict[str, bytes]:
+    """Return a table as CSV with all digits, and as LaTeX for one column of an article: file name -> bytes.
 
     Args:
         table: The table.
-        name: Name of the files, without an ending.
+        name: Name of the files without extension.
+        article: The table to print in LaTeX, if it has fewer columns or digits.
+        by: As for :func:`latex_table`, as is *wrapped*.
+        wrapped: Column of long texts.
     """
-    latex = table.to_latex(index=False, na_rep="-", float_format="%.4g", escape=True)
-    return {
-        f"{name}.csv": table.to_csv(index=False).encode(),
-        f"{name}.tex": latex.translate(_SIGNS).encode(),
-    }
+    latex = latex_table(table if article is None else article, by, wrapped)
+    return {f"{name}.csv": table.to_csv(index=False).encode(), f"{name}.tex": latex.encode()}
 
 
 def write_files(files: Mapping[str, bytes], directory: Path) -> list[Path]:

@@ -6,7 +6,7 @@ import pandas as pd
 
 from evoframe.analysis.data.champions import ChampionData, load_champion
 from evoframe.analysis.data.tables import versions_table
-from evoframe.analysis.data.units import axis_title, with_unit
+from evoframe.analysis.data.units import axis_title, in_unit, with_unit
 from evoframe.analysis.figures.lines import lines_of_run
 from evoframe.analysis.figures.studies import draw_lines
 from evoframe.analysis.output.writing import figure_files, table_files
@@ -89,4 +89,5 @@ def _summary(run: Run, champion: ChampionData) -> pd.DataFrame:
         figures[f"{name}: mean fitness"] = last[name]["mean"]
     if run.finished():
         figures["pair of the fittest"] = run.summary()["fittest_pair_score"]
-    return pd.DataFrame({"figure": list(figures), f"value ({champion.unit or 1})": list(figures.values())})
+    table = pd.DataFrame({"figure": list(figures), "value": list(figures.values())})
+    return in_unit(table, ["value"], champion.unit)

@@ -12,8 +12,11 @@ from evoframe.analysis.data.studies import StudyData
 from evoframe.analysis.data.tables import (
     Compared,
     comparisons,
+    pairs_article,
     pairs_table,
+    ranking_article,
     ranking_table,
+    summary_article,
     summary_table,
     versions_table,
 )
@@ -38,6 +41,7 @@ from evoframe.study import STUDY_FILE
 
 __all__ = ["draft_of_study"]
 
+_HEADING = ("heading",)
 _RANKINGS = (
     "Rankings by decreasing mean rank, in the paper's notation. Each sign compares only its two neighbors: > "
     "is a significant difference, = is none. Letters and pairs, below, compare all groups."
@@ -95,9 +99,9 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
         ],
         files={
             **files,
-            **table_files(summary, "summary"),
-            **table_files(pairs, "pairs"),
-            **table_files(ranking, "ranking"),
+            **table_files(summary, "summary", summary_article(found, data.unit), _HEADING),
+            **table_files(pairs, "pairs", pairs_article(found), _HEADING),
+            **table_files(ranking, "ranking", ranking_article(found), _HEADING, wrapped="ranking"),
             **champion.files,
             **robustness.files,
             "conclusions.txt": words.encode(),

@@ -8,10 +8,21 @@ from typing import Any
 
 import pandas as pd
 
+from evoframe.analysis.data.units import in_unit
 from evoframe.analysis.output.writing import figure_files, prepare_directory, table_files, write_files
 from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.findings import Findings
-from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
+from evoframe.analysis.robustness.tables import (
+    SCORES,
+    bodies_article,
+    bodies_table,
+    groups_article,
+    groups_table,
+    pairs_article,
+    pairs_table,
+    ranking_article,
+    ranking_table,
+)
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.robustness import document_of, write_measurement
 
@@ -46,8 +57,18 @@ def write_findings(found: Findings, directory: Path) -> list[Path]:
         RunError: A file cannot be written.
     """
     files = {"conclusions.txt": conclusions(found).encode()}
-    for name, table in _all_tables(found).items():
-        files |= table_files(table, name)
+    unit = found.measured.setting.unit
+    tables = _all_tables(found)
+    for name in ("groups", "bodies"):
+        tables[name] = in_unit(tables[name], SCORES, unit)
+    articles = {
+        "groups": groups_article(found),
+        "bodies": bodies_article(found.measured),
+        "pairs": pairs_article(found),
+        "ranking": ranking_article(found),
+    }
+    for name, table in tables.items():
+        files |= table_files(table, name, articles[name], wrapped="ranking")
     return write_files(files | figure_files(violins(found.measured), "violins"), directory)
 
 

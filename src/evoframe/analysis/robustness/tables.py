@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from evoframe.analysis.data.units import axis_title, factor_of
+from evoframe.analysis.output.latex import decimals, fixed, p_cell, quartiles_cell
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics.blocks import BlockComparison
 from evoframe.analysis.statistics.groups import Comparison
 from evoframe.analysis.statistics.pairs import Pair
 from evoframe.robustness import Robustness
 
-__all__ = ["bodies_table", "groups_table", "pairs_table", "ranking_table"]
+__all__ = [
+    "SCORES",
+    "bodies_article",
+    "bodies_table",
+    "groups_article",
+    "groups_table",
+    "pairs_article",
+    "pairs_table",
+    "ranking_article",
+    "ranking_table",
+]
 
-_SPREAD = ("median", "first quartile", "third quartile", "least", "greatest", "positive")
+SCORES = ("median", "first quartile", "third quartile", "least", "greatest")
+"""Columns of the tables of groups and bodies that are in the unit of the scores."""
+
+_SPREAD = (*SCORES, "positive")
 _PAIRS = (
     *("first", "second", "correction", "Dunn p", "A12", "Wilcoxon p", "wins"),
     *("Dunn p by body", "A12 by body"),
@@ -97,6 +113,69 @@ def ranking_table(found: Findings) -> pd.DataFrame:
         within = (name, blocks.chi_squared, blocks.p) if blocks.tested else (None, None, None)
         rows.insert(1, ("within controllers", *within, *effect, blocks.ranking()))
     return pd.DataFrame(rows, columns=[*_RANKING])
+
+
+def groups_article(found: Findings) -> pd.DataFrame:
+    """Return the table of groups for an article: medians, quartiles and letters."""
+    return _article(groups_table(found), ["group", "bodies"], ["diverged", "letters"], found.measured)
+
+
+def bodies_article(measured: Robustness) -> pd.DataFrame:
+    """Return the table of bodies for an article: medians and quartiles."""
+    return _article(bodies_table(measured), ["body", "group"], ["diverged"], measured)
+
+
+def pairs_article(found: Findings) -> pd.DataFrame:
+    """Return the table of pairs for an article: p-values and effect sizes across and within controllers."""
+    table = pairs_table(found)
+    return pd.DataFrame(
+        {
+            "first": table["first"],
+            "second": table["second"],
+            "Dunn p": [*map(_p_text, table["Dunn p"])],
+            "A12": [f"{value:.2f}" for value in table["A12"]],
+            "Wilcoxon p": [*map(_p_text, table["Wilcoxon p"])],
+            "wins": [f"{value:.2f}" for value in table["wins"]],
+        }
+    )
+
+
+def ranking_article(found: Findings) -> pd.DataFrame:
+    """Return the table of rankings for an article."""
+    table = ranking_table(found)
+    return pd.DataFrame(
+        {
+            "ranking": [
+                f"{compared}: {ranking}"
+                for compared, ranking in zip(table["compared"], table["ranking"], strict=True)
+            ],
+            "test": ["-" if pd.isna(name) else name for name in table["test"]],
+            "p": [*map(_p_text, table["p"])],
+        }
+    )
+
+
+def _article(table: pd.DataFrame, names: list[str], more: list[str], measured: Robustness) -> pd.DataFrame:
+    """Return *names*, medians, quartiles and *more* of a table, rounded by their standard error."""
+    unit = measured.setting.unit
+    factor = factor_of(unit)
+    spread = table[["median", "first quartile", "third quartile"]].astype(float) * factor
+    error = (spread["third quartile"] - spread["first quartile"]) / math.sqrt(measured.setting.controllers)
+    places = decimals(error)
+    known = spread["median"].notna()
+    medians = [
+        fixed(value, places) if there else "-" for value, there in zip(spread["median"], known, strict=True)
+    ]
+    quartiles = [
+        quartiles_cell(low, high, places) if there else "-"
+        for low, high, there in zip(spread["first quartile"], spread["third quartile"], known, strict=True)
+    ]
+    shown = {axis_title("median", unit): medians, axis_title("quartiles", unit): quartiles}
+    return pd.DataFrame({**table[names], **shown, **table[more]})
+
+
+def _p_text(p: float | None) -> str:
+    return p_cell(None if pd.isna(p) else p)
 
 
 def _p_of(pair: Pair, whole: Comparison | BlockComparison | None) -> float | None:
