@@ -1,4 +1,4 @@
-"""The rooms of the analysis offer what they name, and cost nothing before they are used."""
+"""Tests of the subpackages of the analysis: their exported names, and lazy loading."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOMS = [module.name for module in pkgutil.iter_modules(analysis.__path__) if mo
 
 
 @pytest.mark.parametrize("name", ROOMS)
-def test_a_room_says_what_it_is_for_and_has_what_it_names(name: str) -> None:
+def test_a_subpackage_has_a_docstring_and_its_exported_names(name: str) -> None:
     room = getattr(analysis, name)
     assert isinstance(room, ModuleType)
     assert room.__doc__
@@ -26,19 +26,19 @@ def test_a_room_says_what_it_is_for_and_has_what_it_names(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ROOMS)
-def test_no_module_has_the_name_of_what_its_room_offers(name: str) -> None:
+def test_no_module_has_the_name_of_an_exported_object(name: str) -> None:
     room = importlib.import_module(f"evoframe.analysis.{name}")
     modules = {module.name for module in pkgutil.iter_modules(room.__path__)}
     assert not modules & {*room.__all__}
 
 
 @pytest.mark.parametrize("module", ["evoframe.analysis", "evoframe.analysis.statistics"])
-def test_what_is_not_there_is_no_attribute(module: str) -> None:
+def test_a_missing_attribute_is_an_error(module: str) -> None:
     with pytest.raises(AttributeError, match="nothing"):
-        importlib.import_module(module).nothing  # noqa: B018 - it is asked for
+        importlib.import_module(module).nothing  # noqa: B018 - the access must fail
 
 
-def test_the_first_use_of_a_room_loads_its_libraries() -> None:
+def test_the_first_use_of_a_subpackage_loads_its_libraries() -> None:
     program = (
         "import sys, evoframe.analysis; print('matplotlib' in sys.modules or 'pandas' in sys.modules);"
         "evoframe.analysis.networks.network; print('matplotlib' in sys.modules)"

@@ -1,4 +1,4 @@
-# The rooms of the analysis; read by type checkers, and by lazy_loader in __init__.py.
+# The subpackages of the analysis; read by type checkers, and by lazy_loader in __init__.py.
 
 from . import (
     data as data,

@@ -1,4 +1,4 @@
-"""Analysis for scripts and notebooks; the libraries of the extra ``report`` are loaded by the first call."""
+"""Analysis for scripts and notebooks; the first call loads the libraries of the extra ``report``."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ __all__ = ["load_study", "report"]
 
 
 def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:
-    """Return a study and what is finished of it: data frames, and views for its figures.
+    """Return a study and its finished runs: data frames, and views for its figures.
 
     Args:
-        directory: Its directory.
-        plugins: The plugins that its configurations name; by default those that are installed.
+        directory: Directory of the study.
+        plugins: Plugins that its configurations name; by default the installed ones.
 
     Raises:
         ModuleNotFoundError: The extra ``report`` is not installed.
-        ConfigurationError: It cannot be read with these plugins.
-        InputError: It is no study's directory, or one of its runs is damaged.
+        ConfigurationError: The study cannot be read with these plugins.
+        InputError: *directory* does not contain a study, or one of its runs is damaged.
     """
     from evoframe.analysis import data  # noqa: PLC0415 - takes a second, and an extra
 
@@ -43,12 +43,12 @@ def report(
 
     Args:
         source: A run, its directory, or the directory of a study; finished or not.
-        out: The directory of the report; by default ``report`` within that of the source.
-        correction: Of pairwise p-values, for the number of pairs.
-        plugins: The plugins that the source names; by default those that are installed.
+        out: Directory of the report; by default ``report`` in the directory of the source.
+        correction: Correction of pairwise p-values for multiple comparisons.
+        plugins: Plugins that the source names; by default the installed ones.
 
     Returns:
-        The report that was written: its directory, its files, and its conclusions.
+        The report: its directory, its files, and its conclusions.
 
     Raises:
         ModuleNotFoundError: The extra ``report`` is not installed.

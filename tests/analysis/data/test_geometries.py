@@ -1,4 +1,4 @@
-"""A geometry that cannot be drawn is the fault of the simulator that gave it."""
+"""Tests of the validation of geometries returned by simulators."""
 
 from __future__ import annotations
 
@@ -25,37 +25,37 @@ def with_part(**changes: Any) -> Geometry:
     return attrs.evolve(GOOD, parts=(attrs.evolve(SQUARE, **changes),))
 
 
-def test_what_can_be_drawn_is_returned_as_it_is() -> None:
+def test_a_valid_geometry_is_returned() -> None:
     assert checked(GOOD) is GOOD
 
 
 @pytest.mark.parametrize(
     ("given", "problem"),
     [
-        (None, "gave NoneType, expected a Geometry"),
-        (attrs.evolve(GOOD, parts=()), "gave nothing that can be seen"),
-        (with_part(vertices=VERTICES * np.nan), "gave vertices of 'square' that are not finite"),
-        (with_part(vertices=VERTICES * 1e300), "gave vertices of 'square' that are not finite, or larger"),
-        (with_part(vertices=VERTICES[:1]), r"of shape \(1, 4, 3\), expected \(2, 4, 3\)"),
-        (with_part(vertices=VERTICES[0]), r"of shape \(4, 3\), expected \(2, 0, 3\)"),
-        (with_part(faces=np.array([[0, 1, 2]])), r"faces of 'square' that are no integers of shape \(m, 4\)"),
-        (with_part(faces=np.array([[0.0, 1.0, 2.0, 3.0]])), "faces of 'square' that are no integers"),
-        (with_part(faces=np.array([[0, 1, 2, 4]])), "other corners than its 4 vertices"),
-        (with_part(faces=np.array([[0, 1, 2, -1]])), "other corners than its 4 vertices"),
-        (with_part(colour="reddish"), "gave 'square' the colour 'reddish'"),
+        (None, "NoneType"),
+        (attrs.evolve(GOOD, parts=()), "no visible"),
+        (with_part(vertices=VERTICES * np.nan), r"vertices of 'square' .*1e\+30"),
+        (with_part(vertices=VERTICES * 1e300), r"vertices of 'square' .*1e\+30"),
+        (with_part(vertices=VERTICES[:1]), r"'square'.* \(1, 4, 3\), expected \(2, 4, 3\)"),
+        (with_part(vertices=VERTICES[0]), r"'square'.* \(4, 3\), expected \(2, 0, 3\)"),
+        (with_part(faces=np.array([[0, 1, 2]])), r"faces of 'square' as int64\(1, 3\)"),
+        (with_part(faces=np.array([[0.0, 1.0, 2.0, 3.0]])), r"faces of 'square' as float64\(1, 4\)"),
+        (with_part(faces=np.array([[0, 1, 2, 4]])), "vertices 0 to 4, expected 0 to 3"),
+        (with_part(faces=np.array([[0, 1, 2, -1]])), "vertices -1 to 2, expected 0 to 3"),
+        (with_part(colour="reddish"), "'square' .*'reddish'"),
         (with_part(opacity=np.nan), "opacity nan"),
-        (attrs.evolve(GOOD, times=np.array([0.0, np.inf])), "gave times that are not finite"),
-        (attrs.evolve(GOOD, times=np.array([])), r"gave times of shape \(0,\)"),
-        (attrs.evolve(GOOD, tracks={"tip": VERTICES[:1, 2]}), "gave the track 'tip' of shape"),
-        (attrs.evolve(GOOD, tracks={"tip": np.full((2, 3), np.nan)}), "gave the track 'tip' that are not"),
+        (attrs.evolve(GOOD, times=np.array([0.0, np.inf])), r"times .*1e\+30"),
+        (attrs.evolve(GOOD, times=np.array([])), r"times .*\(0,\)"),
+        (attrs.evolve(GOOD, tracks={"tip": VERTICES[:1, 2]}), r"track 'tip' .*\(1, 3\), expected \(2, 3\)"),
+        (attrs.evolve(GOOD, tracks={"tip": np.full((2, 3), np.nan)}), r"track 'tip' .*1e\+30"),
     ],
 )
-def test_what_cannot_be_drawn_is_named(given: Any, problem: str) -> None:
+def test_an_invalid_geometry_is_named(given: Any, problem: str) -> None:
     with pytest.raises((TypeError, ValueError), match=problem):
         checked(given)
 
 
-def test_the_simulator_is_blamed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_the_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
     plugins = toy_box.installed()
     made = run(tmp_path / "toy.toml", out=tmp_path / "r", plugins=plugins)
@@ -64,5 +64,6 @@ def test_the_simulator_is_blamed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         return with_part(vertices=VERTICES * np.nan)
 
     monkeypatch.setattr(toys.Product, "geometry", geometry, raising=False)
-    with pytest.raises(ComponentError, match=r"^simulator: ValueError: geometry\(\) gave vertices"):
+    with pytest.raises(ComponentError, match=r"ValueError: .*vertices of 'square'") as caught:
         load_champion(made, plugins)
+    assert caught.value.component == "simulator"

@@ -1,4 +1,4 @@
-"""``load_study``: tidy tables of what is finished."""
+"""Tests of ``load_study``: tidy tables of the finished runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from evoframe.study.plan import Planned, Study
 from evoframe.study.rows import row_of
 
 
-def test_a_study_is_read_as_it_stands(
+def test_an_unfinished_study_is_read_and_not_changed(
     made: tuple[Study, Path, list[Planned]], toy_plugins: Plugins, tmp_path: Path
 ) -> None:
     study, _, planned = made
@@ -40,7 +40,7 @@ def test_a_study_is_read_as_it_stands(
     assert list(last["fitness"]) == [row.fitness for row in data.rows]
 
 
-def test_polars_takes_the_tables(
+def test_polars_accepts_the_tables(
     made: tuple[Study, Path, list[Planned]], toy_plugins: Plugins, tmp_path: Path
 ) -> None:
     study, directory, _ = made

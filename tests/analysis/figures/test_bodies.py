@@ -1,4 +1,4 @@
-"""Figures of bodies show all their parts, in the colours that were asked for."""
+"""Tests of figures of bodies: parts, colors, texts and layout."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def collection(figure: Any) -> Poly3DCollection:
     return found
 
 
-def test_all_faces_are_there_in_shades_of_their_colour(geometry: Geometry) -> None:
+def test_all_faces_have_shades_of_their_color(geometry: Geometry) -> None:
     drawn = collection(body(geometry, "a body"))
     colours = np.asarray(drawn.get_facecolor())
     assert len(colours) == sum(len(part.faces) for part in geometry.parts)
@@ -53,7 +53,7 @@ def test_parts_title_and_size_are_named(geometry: Geometry) -> None:
 
 
 def extent_of(figure: Any, points: Any) -> Bbox:
-    """Where points of the body are in the picture, in pixels."""
+    """Return the extent of points of the body in the figure, in pixels."""
     [axes] = figure.axes
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
     shown = axes.transData.transform(np.column_stack([x, y]))
@@ -69,17 +69,21 @@ def test_a_body_of_any_shape_overlaps_nothing_and_is_not_clipped(shape: tuple[in
     figure.draw_without_rendering()
     shown = extent_of(figure, np.concatenate([part.vertices[0] for part in geometry.parts]))
     [legend], [axes] = figure.legends, figure.axes
-    title, size, *letters = [text.get_window_extent() for text in (*figure.texts, *axes.texts)]
+    title, size = [text.get_window_extent() for text in figure.texts]
+    letters = [extent_of(figure, np.array([text.get_position_3d()])).padded(4) for text in axes.texts]  # type: ignore[attr-defined]
+    assert len(letters) == 3
     assert not any(other.overlaps(shown) for other in (title, size, legend.get_window_extent()))
     assert not title.overlaps(size)
     for box in (shown, title, size, *letters):
         assert min(box.x0, box.y0) >= 0
         assert box.x1 <= figure.bbox.x1
         assert box.y1 <= figure.bbox.y1
-    assert shown.width > 0.5 * figure.bbox.width or shown.height > 1.5 * figure.dpi  # and it is large
+    assert (
+        shown.width > 0.5 * figure.bbox.width or shown.height > 1.5 * figure.dpi
+    )  # the body fills the figure
 
 
-def test_a_later_frame_is_another_picture(geometry: Geometry) -> None:
+def test_a_later_frame_changes_the_figure(geometry: Geometry) -> None:
     rest, later = (body(geometry, frame=frame).axes[0].get_xlim() for frame in (0, 1))
     assert rest == (0.0, 0.25)
     assert rest != later

@@ -1,4 +1,4 @@
-"""Layouts go from left to right, and nothing stands in the way of anything."""
+"""Tests of layouts of networks: directions, order, and no overlaps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from evoframe.analysis.figures.layered import effective, layered
 
 
 def reached(graph: NetworkGraph) -> set[int]:
-    """Return the nodes from which an output is reached, by trying every link until nothing is new."""
+    """Return the nodes from which an output is reached, by following every link repeatedly."""
     found: set[int] = set(graph.outputs)
     for _ in graph.labels:
         found |= {link.start for link in graph.links if link.end in found}
@@ -22,7 +22,7 @@ def reached(graph: NetworkGraph) -> set[int]:
 
 
 @given(GRAPHS)
-def test_dead_ends_are_left_out_and_nothing_else(graph: NetworkGraph) -> None:
+def test_only_dead_ends_are_omitted(graph: NetworkGraph) -> None:
     kept = effective(graph)
     alive = reached(graph)
     assert set(kept.labels) == set(graph.labels) & alive
@@ -52,7 +52,7 @@ def test_inputs_are_at_the_left_and_outputs_at_the_right_in_their_order(graph: N
 
 
 @given(GRAPHS)
-def test_every_node_has_a_place_of_its_own(graph: NetworkGraph) -> None:
+def test_no_two_nodes_overlap(graph: NetworkGraph) -> None:
     layout = layered(graph)
     assert set(layout.heights) == set(layout.columns) == {*graph.inputs, *graph.labels}
     for column in set(layout.columns.values()):
@@ -63,7 +63,7 @@ def test_every_node_has_a_place_of_its_own(graph: NetworkGraph) -> None:
 
 
 @given(GRAPHS)
-def test_a_link_passes_beside_nodes(graph: NetworkGraph) -> None:
+def test_a_link_does_not_cross_nodes(graph: NetworkGraph) -> None:
     layout = layered(graph)
     for link, route in zip(graph.links, layout.routes, strict=True):
         for column, height in enumerate(route[1:-1], start=layout.columns[link.start] + 1):
@@ -101,7 +101,7 @@ def test_links_that_need_not_cross_do_not(order: list[int]) -> None:
 
 
 @pytest.mark.parametrize("length", [1, 2, 5, 300])
-def test_a_cycle_is_drawn_with_one_link_that_goes_back(length: int) -> None:
+def test_a_cycle_has_one_backward_link(length: int) -> None:
     ring = [NetworkLink(1 + n, 1 + (n + 1) % length, 1.0) for n in range(length)]
     links = (NetworkLink(-1, 1, 1.0), *ring, NetworkLink(length, 0, 1.0))
     layout = layered(NetworkGraph((-1,), (0,), dict.fromkeys(range(length + 1), "sin"), links))
@@ -109,20 +109,20 @@ def test_a_cycle_is_drawn_with_one_link_that_goes_back(length: int) -> None:
     assert [layout.columns[link.start] < layout.columns[link.end] for link in links].count(False) == 1
 
 
-def test_what_depends_on_nothing_stands_beside_what_depends_on_it() -> None:
+def test_a_node_without_inputs_precedes_its_first_dependent() -> None:
     chain = [NetworkLink(-1, 1, 1.0), NetworkLink(1, 2, 1.0), NetworkLink(2, 3, 1.0), NetworkLink(3, 0, 1.0)]
     graph = NetworkGraph((-1,), (0,), dict.fromkeys(range(5), "sin"), (*chain, NetworkLink(4, 3, 1.0)))
     assert layered(graph).columns == {-1: 0, 1: 1, 2: 2, 4: 2, 3: 3, 0: 4}
 
 
-def test_an_output_that_others_depend_on_stands_before_them() -> None:
+def test_an_output_precedes_its_dependents() -> None:
     links = (NetworkLink(-1, 0, 1.0), NetworkLink(0, 2, 1.0), NetworkLink(2, 1, 1.0))
     graph = NetworkGraph((-1,), (0, 1), dict.fromkeys(range(3), "sin"), links)
     assert layered(graph).columns == {-1: 0, 0: 1, 2: 2, 1: 3}
 
 
 @given(NETWORKS)
-def test_what_is_joined_to_nothing_is_not_far_away(graph: NetworkGraph) -> None:
+def test_a_node_without_links_stays_close(graph: NetworkGraph) -> None:
     lonely = attrs.evolve(graph, inputs=(*graph.inputs, -98, -99))
     heights = layered(lonely).heights
     assert heights[-99] - heights[-98] == pytest.approx(1)

@@ -1,4 +1,4 @@
-"""Lines are means over those runs whose curves are there."""
+"""Tests of lines over generations: means, bands, and missing values."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ ROW = Row({"aggregator": "am"}, 0, 1, "", "", 1.0, 1.0, 1.0, 1, 1, 1.0, "")
 
 
 def view(**groups: Sequence[Sequence[float]]) -> View:
-    """Groups of runs with these curves of the score."""
+    """Return groups of runs with these curves of the score."""
     rows = {
         name: [attrs.evolve(ROW, score_curve=tuple(c)) for c in curves] for name, curves in groups.items()
     }
     return View("n = 2", "aggregator", rows)
 
 
-def test_runs_without_curves_do_not_count() -> None:
+def test_runs_without_curves_are_ignored() -> None:
     [line] = lines_of_view(view(AM=[(1.0, 2.0), (), (3.0, 4.0)]), "score")
     assert line.name == "AM: 2"
     assert line.values.tolist() == [2.0, 3.0]
@@ -35,7 +35,7 @@ def test_runs_without_curves_do_not_count() -> None:
     assert (alone.name, alone.band) == ("AM: 1", None)
 
 
-def test_a_group_without_curves_has_no_line_and_leaves_the_colours_of_the_others() -> None:
+def test_a_group_without_curves_has_no_line_and_keeps_its_color() -> None:
     [line] = lines_of_view(view(AM=[()], WM=[(1.0, 2.0)]), "score")
     assert (line.name, line.colour) == ("WM: 1", 1)
     assert lines_of_view(view(AM=[()], WM=[()]), "score") == []
@@ -43,7 +43,7 @@ def test_a_group_without_curves_has_no_line_and_leaves_the_colours_of_the_others
         curves(view(AM=[()]), "score")
 
 
-def test_lines_of_different_lengths_are_drawn_each_as_far_as_all_its_runs_go() -> None:
+def test_a_line_ends_with_the_shortest_run_of_its_group() -> None:
     there = view(short=[(1.0, 2.0), (3.0, 4.0)], long=[(1.0, 2.0, 3.0), (1.0, 2.0, 4.0, 9.0)])
     short, long = lines_of_view(there, "score")
     assert (short.values.tolist(), long.values.tolist()) == ([2.0, 3.0], [1.0, 2.0, 3.5])
@@ -51,7 +51,7 @@ def test_lines_of_different_lengths_are_drawn_each_as_far_as_all_its_runs_go() -
     assert [len(np.asarray(line.get_xdata())) for line in axes.lines] == [2, 3]
 
 
-def test_where_a_run_has_no_score_yet_there_is_a_gap() -> None:
+def test_a_missing_score_leaves_a_gap() -> None:
     there = view(AM=[(math.nan, 1.0, 2.0), (1.0, 1.5, 3.0)] * 3, WM=[(math.nan,) * 3] * 5)
     line, nothing = lines_of_view(there, "score")
     assert line.band is not None
@@ -62,7 +62,7 @@ def test_where_a_run_has_no_score_yet_there_is_a_gap() -> None:
     assert lines_chart([line], "").data[0].y[0] is None
 
 
-def test_a_few_runs_have_no_band() -> None:
+def test_fewer_than_five_runs_have_no_band() -> None:
     four, five = lines_of_view(
         view(AM=[(1.0, 2.0), (2.0, 3.0)] * 2, WM=[(1.0, float(n)) for n in range(5)]), "score"
     )
@@ -70,7 +70,7 @@ def test_a_few_runs_have_no_band() -> None:
     assert five.band is not None
 
 
-def test_bands_are_those_of_all_resamples_at_once() -> None:
+def test_batches_of_resamples_give_the_band_of_all_at_once() -> None:
     values = np.random.default_rng(1).normal(size=(7, 11))
     [line] = lines_of_view(view(AM=values.tolist()), "score")
     whole = stats.bootstrap(

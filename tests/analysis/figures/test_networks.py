@@ -1,4 +1,4 @@
-"""Figures of networks show every node and link, and nothing over anything else."""
+"""Tests of figures of networks: every node and link is shown, without overlaps."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from evoframe import NetworkGraph, NetworkLink
 from evoframe.analysis.figures.layered import effective
 from evoframe.analysis.figures.networks import NEGATIVE, PALE, POSITIVE, network
 
-SOME = settings(max_examples=25)  # a figure takes its time
+SOME = settings(max_examples=25)  # drawing is slow
 
 
 def link(start: int, end: int, weight: float = 1.0) -> NetworkLink:
@@ -40,7 +40,7 @@ def drawn(graph: NetworkGraph, title: str = "champion") -> Figure:
 
 
 def boxes(axes: Axes) -> list[Bbox]:
-    """Return where the boxes of nodes are: of those with an activation, then of inputs."""
+    """Return the boxes of nodes: first those with an activation, then inputs."""
     return [patch.get_bbox() for patch in axes.patches if isinstance(patch, FancyBboxPatch)]
 
 
@@ -126,11 +126,11 @@ def test_links_show_sign_and_size(graph: NetworkGraph) -> None:
             assert widths[one] > widths[other]
 
 
-def test_nodes_without_effect_are_left_out_and_counted() -> None:
+def test_nodes_without_effect_are_omitted_and_counted() -> None:
     graph = graph_of(link(-1, 1), link(1, 0), link(-2, 2), link(2, 3), hidden=4)
-    assert "3 of 4 hidden nodes have no effect and are left out" in words(drawn(graph))
+    assert [text for text in words(drawn(graph)) if text.startswith("3 of 4 ")]
     one = graph_of(link(-1, 1), link(1, 0), hidden=2)
-    assert "1 of 2 hidden nodes has no effect and is left out" in words(drawn(one))
+    assert [text for text in words(drawn(one)) if text.startswith("1 of 2 ")]
     assert words(drawn(graph_of(link(-1, 1), link(1, 0), hidden=1))) == [
         *("tanh", "tanh", "in 0", "in 1", "out 0", "champion")
     ]
@@ -157,7 +157,7 @@ def test_a_network_without_links_is_drawn_without_a_legend() -> None:
         ([2.0, -1.0], ["positive weight", "negative weight", "|weight| = 1", "|weight| = 2"]),
     ],
 )
-def test_the_legend_says_what_there_is(weights: list[float], entries: list[str]) -> None:
+def test_the_legend_has_the_signs_and_extreme_weights(weights: list[float], entries: list[str]) -> None:
     graph = graph_of(*(link(-1 - number, 0, weight) for number, weight in enumerate(weights)))
     [legend] = drawn(graph).legends
     assert [text.get_text() for text in legend.get_texts()] == entries
@@ -173,17 +173,17 @@ def test_figures_are_as_wide_as_a_column_or_the_text(length: int, width: float) 
     assert drawn(chain(length)).get_size_inches()[0] == width
 
 
-def test_a_deep_network_gets_the_width_that_it_needs() -> None:
+def test_a_deep_network_has_a_wider_figure() -> None:
     assert 7 < drawn(chain(20)).get_size_inches()[0] < drawn(chain(30)).get_size_inches()[0]
 
 
-def test_a_link_that_goes_back_is_an_arrow() -> None:
+def test_a_backward_link_is_an_arrow() -> None:
     [axes] = drawn(graph_of(link(-1, 1), link(1, 2), link(2, 1, 3.0), link(2, 0), hidden=2)).axes
     styles: list[Any] = [curve.get_arrowstyle() for curve in curves(axes)]
     assert [style.arrow for style in styles] == ["-|>", "-", "-", "-"]  # the heaviest link is the first
 
 
-def test_names_of_others_are_no_formulas() -> None:
+def test_names_with_dollar_signs_are_not_formulas() -> None:
     graph = attrs.evolve(graph_of(link(-1, 0)), labels={0: r"$\nothing$"})
     figure = network(graph, ["$x", "y$"], ["$\\"], r"$\frac$")
     figure.draw_without_rendering()
@@ -204,15 +204,15 @@ def svg(graph: NetworkGraph) -> bytes:
     return data.getvalue()
 
 
-def test_names_that_are_not_as_many_are_refused() -> None:
-    with pytest.raises(ValueError, match="1 names for 2 inputs: x"):
+def test_a_wrong_number_of_names_is_rejected() -> None:
+    with pytest.raises(ValueError, match=r"1 names for 2 inputs.*x"):
         network(graph_of(), ["x"], ["out"])
-    with pytest.raises(ValueError, match="2 names for 1 outputs: a, b"):
+    with pytest.raises(ValueError, match=r"2 names for 1 outputs.*a, b"):
         network(graph_of(), ["x", "y"], ["a", "b"])
 
 
-def test_a_network_too_large_for_a_figure_is_refused() -> None:
-    with pytest.raises(ValueError, match="301 nodes and 301 links are too many for a figure"):
+def test_a_network_too_large_for_a_figure_is_rejected() -> None:
+    with pytest.raises(ValueError, match=r"301 nodes and 301 links .*500"):
         drawn(chain(300))
 
 

@@ -1,4 +1,4 @@
-"""Names with dollar signs are no formulas."""
+"""Tests of literal texts: names with dollar signs are not parsed as formulas."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ def titled(title: str) -> Figure:
 
 
 @pytest.mark.parametrize("name", ["$x$", "cost$^$", "$"])
-def test_texts_are_drawn_as_they_are(name: str) -> None:
+def test_texts_are_literal(name: str) -> None:
     figure = titled(name)
     figure.draw_without_rendering()
     assert [text.get_parse_math() for text in figure.texts] == [False]
     assert figure.get_suptitle() == name
 
 
-def test_figures_of_others_still_have_formulas() -> None:
+def test_other_figures_still_parse_formulas() -> None:
     titled("x")
     assert mpl.rcParams["text.parse_math"]
 
 
-def test_it_is_the_function_that_it_was() -> None:
+def test_name_and_docstring_are_kept() -> None:
     assert titled.__name__ == "titled"
     assert titled.__doc__ == "Return a figure with a title."

@@ -1,4 +1,4 @@
-"""Names are broken into lines that fit, and nothing is lost but the middle of endless ones."""
+"""Tests of line breaks of names, which only drop the middle of very long names."""
 
 from __future__ import annotations
 
@@ -32,5 +32,5 @@ def test_nothing_is_lost(name: str) -> None:
         ("x" * 1000, ["x" * 17, "x" * 17, "x" * 17, "...", "x" * 17, "x" * 14]),
     ],
 )
-def test_lines_end_where_words_do(name: str, lines: list[str]) -> None:
+def test_lines_break_between_words(name: str, lines: list[str]) -> None:
     assert broken(name, 1.0, 7).split("\n") == lines

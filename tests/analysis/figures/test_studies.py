@@ -1,4 +1,4 @@
-"""Figures show what they are made of."""
+"""Tests of figures of studies."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _edges(vertices: NDArray[np.float64], at: int) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("yardstick", YARDSTICKS)
-def test_final_values_are_all_there_with_their_letters(data: StudyData, yardstick: Yardstick) -> None:
+def test_all_final_values_are_shown_with_letters(data: StudyData, yardstick: Yardstick) -> None:
     [view] = data.views(yardstick)
     [axes] = finals(view, yardstick, data.unit, compare(view.values(yardstick))).axes
     points = [line for line in axes.lines if line.get_marker() == "o"]
@@ -85,7 +85,7 @@ def test_ranks_name_all_groups(data: StudyData) -> None:
 def test_bars_join_groups_if_and_only_if_no_pair_of_them_differs(
     values: list[list[float]], correction: Correction
 ) -> None:
-    # Without ties of mean ranks a bar's ends say which groups it joins.
+    # Without ties of mean ranks, the ends of a bar identify the groups that it joins.
     comparison = compare({f"group {number}": each for number, each in enumerate(values)}, correction)
     place = {group.name: group.mean_rank for group in comparison.groups}
     assume(len(set(place.values())) == len(place))
@@ -110,7 +110,7 @@ NAMES_OF_GROUPS = {
 
 
 def made_up(kind: str, count: int) -> View:
-    """Return a view of so many groups of six runs."""
+    """Return a view of *count* groups of six runs."""
     rng = np.random.default_rng(count)
     groups = {}
     for number in range(count):
@@ -144,7 +144,7 @@ def test_nothing_is_clipped_and_no_texts_overlap(kind: str, count: int) -> None:
 
 
 def boxes_of_texts(figure: Figure) -> list[Bbox]:
-    """Return where all texts are that can be seen."""
+    """Return the extents of all visible texts."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]
     renderer = canvas.get_renderer()  # type: ignore[no-untyped-call]
@@ -155,7 +155,7 @@ def boxes_of_texts(figure: Figure) -> list[Bbox]:
 
 
 def hidden_ticks(axes: Axes) -> set[Text]:
-    """Return the labels of ticks that lie outside of the axes, or of an axis that is not drawn."""
+    """Return the labels of ticks outside of the axes, and of invisible axes."""
     hidden: set[Text] = set()
     for axis in (axes.xaxis, axes.yaxis):
         low, high = sorted(axis.get_view_interval())
@@ -184,4 +184,4 @@ def test_the_best_of_each_view_are_compared_too(data: StudyData) -> None:
     *views, best = both.views("score")
     assert [view.title for view in views] == ["n = 2", "n = 3"]
     assert best.title == "best of each"
-    assert list(best.groups) == ["AM (n = 2)", "HM (n = 3)"]  # who ranks first
+    assert list(best.groups) == ["AM (n = 2)", "HM (n = 3)"]  # the best of each view

@@ -1,4 +1,4 @@
-"""A report removes what an earlier one has left, and nothing else."""
+"""Tests of the removal of outdated files of an earlier report."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def names(directory: Path) -> set[str]:
     return {path.name for path in directory.iterdir()}
 
 
-def test_what_is_not_written_again_is_removed(tmp_path: Path) -> None:
+def test_outdated_files_are_removed(tmp_path: Path) -> None:
     assert listed(tmp_path) == {}
     written(tmp_path, "mine")
     settle(tmp_path, listed(tmp_path), written(tmp_path, "a", "b"))
@@ -31,7 +31,7 @@ def test_what_is_not_written_again_is_removed(tmp_path: Path) -> None:
     assert set(listed(tmp_path)) == {"b", "c"}
 
 
-def test_what_somebody_has_changed_removed_or_linked_is_left_alone(tmp_path: Path) -> None:
+def test_modified_removed_and_linked_files_are_kept(tmp_path: Path) -> None:
     settle(tmp_path, {}, written(tmp_path, "changed", "removed", "linked"))
     (tmp_path / "changed").write_text("by somebody")
     (tmp_path / "removed").unlink()
@@ -48,7 +48,9 @@ def test_what_somebody_has_changed_removed_or_linked_is_left_alone(tmp_path: Pat
         *(f'{{"files": {{"{name}": ""}}}}' for name in ("", "..", "../a", "/a", "a\\u0000")),
     ],
 )
-def test_a_list_of_something_else_is_refused(tmp_path: Path, text: str) -> None:
+def test_a_file_that_is_not_a_list_of_a_report_is_rejected(tmp_path: Path, text: str) -> None:
     (tmp_path / LIST_FILE).write_text(text)
-    with pytest.raises(InputError, match="is no list of a report's files"):
+    with pytest.raises(InputError) as caught:
         listed(tmp_path)
+    assert caught.value.source == str(tmp_path / LIST_FILE)
+    assert "--out" in caught.value.problem

@@ -1,4 +1,4 @@
-"""A champion is shown as far as its plugins say what it looks like."""
+"""Tests of the champion in a report."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ LARGE = attrs.evolve(SMALL, links=SMALL.links * 600)
 NOTHING = ChampionData(0.005, "m", None, None, (), None)
 
 
-def test_of_one_that_nobody_draws_there_are_words() -> None:
+def test_a_champion_without_geometry_is_described() -> None:
     part = champion_part(NOTHING, "of a run")
     champion, networks = part.sections
-    assert [block.text for block in champion.blocks if isinstance(block, Words)] == [
-        "The champion, of a run, scores 5 mm.",
-        "Its simulator does not say what its designs look like.",
-    ]
+    score, missing = [block.text for block in champion.blocks if isinstance(block, Words)]
+    assert "of a run" in score
+    assert "5 mm" in score
+    assert "simulator" in missing
     assert (networks.blocks, part.files) == ([], {})
 
 
@@ -39,5 +39,6 @@ def test_body_and_networks_are_files_and_blocks() -> None:
     picture, words = drawn.blocks
     assert isinstance(picture, Picture)
     assert picture.svg == part.files["champion-network-small.svg"]
-    assert words == Words("The network of big is not drawn: 1 nodes and 600 links are too many for a figure.")
+    assert isinstance(words, Words)
+    assert all(data in words.text for data in ("big", "1 nodes", "600 links"))
     assert {name.partition(".")[0] for name in part.files} == {"champion-body", "champion-network-small"}

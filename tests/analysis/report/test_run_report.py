@@ -1,4 +1,4 @@
-"""The report of a run has its last figures, and says whether it is finished."""
+"""Tests of the report of a run."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ def plugins() -> Plugins:
 
 @pytest.fixture
 def made(plugins: Plugins, tmp_path: Path) -> Run:
-    """A run of toys."""
+    """Return a run of toys."""
     (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
     return run(tmp_path / "toy.toml", out=tmp_path / "r", plugins=plugins)
 
 
-def test_its_summary_is_that_of_the_record(made: Run, plugins: Plugins) -> None:
+def test_the_summary_has_the_recorded_results(made: Run, plugins: Plugins) -> None:
     draft = draft_of_run(made, plugins)
     rows = csv.DictReader(draft.files["summary.csv"].decode().splitlines())
-    figures = {row["figure"]: float(row["value (1)"]) for row in rows}
+    figures = {row["figure"]: float(row["value"]) for row in rows}
     last = {row["population"]: row for row in made.turns()}
     assert figures == {
         "best pair": made.champion().score,
@@ -38,14 +38,14 @@ def test_its_summary_is_that_of_the_record(made: Run, plugins: Plugins) -> None:
     }
 
 
-def test_its_words_count_turns_and_pairs(made: Run, plugins: Plugins) -> None:
+def test_the_printed_text_counts_turns_and_pairs(made: Run, plugins: Plugins) -> None:
     draft = draft_of_run(made, plugins)
     pairs = sum(row["pairs"] for row in made.workload())
     assert draft.words == f"r: {draft.lead}\n"
     assert draft.lead.endswith(f"; {made.last_turn():,} turns, {pairs:,} pairs; finished")
 
 
-def test_its_page_begins_with_the_champion_and_ends_with_the_configuration(
+def test_the_page_starts_with_the_champion_and_ends_with_the_configuration(
     made: Run, plugins: Plugins
 ) -> None:
     first, *_, last = draft_of_run(made, plugins).sections

@@ -1,4 +1,4 @@
-"""The figure shows every group: its extremes, quartiles and median, and what diverged."""
+"""Tests of the figure: extremes, quartiles, medians and divergences of every group."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from evoframe.analysis.robustness import violins
 
 
 def named(measured: Robustness, names: list[str]) -> Robustness:
-    """Return a measurement whose groups have other names."""
+    """Return a measurement with these names of groups."""
     setting = measured.setting
     bodies = [attrs.evolve(b, group=name) for b, name in zip(setting.bodies, names, strict=True)]
     return attrs.evolve(measured, setting=attrs.evolve(setting, bodies=tuple(bodies)))
@@ -30,7 +30,7 @@ def labels(figure: Figure) -> list[str]:
 
 
 def lines_at(axes: Axes, place: int) -> list[list[float]]:
-    """Return the ends along the axis of values of all horizontal lines of a group."""
+    """Return the ends of all horizontal lines of a group, along the axis of values."""
     found = [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in axes.lines]
     return [x.tolist() for x, y in found if len(x) == 2 and (y == place).all()]
 
@@ -40,7 +40,7 @@ def densities(axes: Axes) -> list[PolyCollection]:
 
 
 def extremes_at(axes: Axes, place: int) -> list[float]:
-    """Return the ends of the line that joins the extremes of a group."""
+    """Return the ends of the line between the extremes of a group."""
     lines = [found for found in axes.collections if isinstance(found, LineCollection)]
     segments = [np.asarray(segment) for line in lines for segment in line.get_segments()]
     [found] = [segment[:, 0].tolist() for segment in segments if (segment[:, 1] == place).all()]
@@ -53,11 +53,11 @@ def title(figure: Figure) -> str:
     return text
 
 
-def test_each_group_has_extremes_quartiles_and_median_in_millimetres() -> None:
+def test_each_group_has_extremes_quartiles_and_median_in_millimeters() -> None:
     measured = measure([1.0, 3.0, 2.0], 50, unit="m")
     figure = violins(measured)
     [axes] = figure.axes
-    assert axes.get_xlabel() == "displacement (mm)"
+    assert axes.get_xlabel() == "score (mm)"
     assert labels(figure) == ["A", "B", "C"]
     assert len(densities(axes)) == 3
     for place in range(3):
@@ -71,7 +71,7 @@ def test_each_group_has_extremes_quartiles_and_median_in_millimetres() -> None:
     assert len({line.get_color() for line in axes.lines}) > 3
 
 
-def test_several_bodies_of_a_group_have_a_tick_each() -> None:
+def test_each_of_several_bodies_of_a_group_has_a_tick() -> None:
     measured = measure([1.0, 3.0, 2.0], 50, groups="XXY")
     figure = violins(measured)
     [axes] = figure.axes
@@ -92,7 +92,7 @@ def test_divergences_are_counted_and_not_drawn() -> None:
     assert not nothing.axes[0].collections
 
 
-def test_one_value_has_no_density_but_a_median() -> None:
+def test_a_single_value_has_a_median_but_no_density() -> None:
     figure = violins(measure([1.0], 1))
     [axes] = figure.axes
     assert not axes.collections

@@ -1,4 +1,4 @@
-"""Findings are written beside the scores, and as JSON for a program."""
+"""Tests of the files of findings, and of their JSON."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import pandas as pd
+import pytest
 from measuring import measure
 
 from evoframe.analysis.robustness import as_json, conclusions, find, records, write_findings, write_robustness
@@ -28,13 +29,25 @@ def test_tables_in_json_are_those_of_the_files(tmp_path: Path) -> None:
     document = json.loads(json.dumps(as_json(found), allow_nan=False))
     for name, rows in document["tables"].items():
         with (tmp_path / "r" / f"{name}.csv").open() as file:
-            told = list(csv.DictReader(file))
-        assert [[*row] for row in told] == [[*row] for row in rows]
-        for line, row in zip(told, rows, strict=True):
+            lines = list(csv.DictReader(file))
+        assert [[*row] for row in lines] == [[*row] for row in rows]
+        for line, row in zip(lines, rows, strict=True):
             for key, value in row.items():
                 assert line[key] == ("" if value is None else str(value))
 
 
-def test_what_is_missing_is_none() -> None:
+def test_files_are_in_millimeters_and_json_in_meters(tmp_path: Path) -> None:
+    found = find(measure([1.0, 2.0, 3.0], 20, unit="m"))
+    write_robustness(found, tmp_path / "r")
+    for name, rows in as_json(found)["tables"].items():
+        table = pd.read_csv(tmp_path / "r" / f"{name}.csv")
+        assert len(table) == len(rows)
+        if name in ("groups", "bodies"):
+            for key in ("median", "first quartile", "third quartile", "least", "greatest"):
+                assert list(table[f"{key} (mm)"]) == pytest.approx([1000 * row[key] for row in rows])
+            assert "median (mm)" in (tmp_path / "r" / f"{name}.tex").read_text()
+
+
+def test_missing_values_are_none() -> None:
     table = pd.DataFrame({"a": [1.5, float("nan")], "b": ["x", None]})
     assert records(table) == [{"a": 1.5, "b": "x"}, {"a": None, "b": None}]

@@ -1,4 +1,4 @@
-"""Statistics of blocks, against R's output and by their laws."""
+"""Tests of statistics within blocks, against R's output and by invariants."""
 
 from __future__ import annotations
 
@@ -46,11 +46,11 @@ def test_wilcoxon_is_that_of_r() -> None:
 
 def test_five_blocks_are_too_few_for_any_difference() -> None:
     [pair] = compare_blocks({"low": [1.0, 2.0, 3.0, 4.0, 5.0], "high": [2.0, 4.0, 6.0, 8.0, 10.0]}).pairs
-    assert pair.p == 0.0625  # two of the 32 ways to give signs are as extreme
+    assert pair.p == 0.0625  # 2 of the 32 sign patterns are as extreme
 
 
-def test_a_ranking_that_contradicts_its_test_says_so() -> None:
-    # A wins a little more often than B, but where it loses it loses much.
+def test_a_ranking_marks_a_contradiction_to_its_test() -> None:
+    # A wins slightly more often than B, but loses by larger margins.
     wins, losses = [1.0 + 0.01 * n for n in range(13)], [-50.0 - n for n in range(12)]
     comparison = compare_blocks({"A": wins + losses, "B": [0.0] * 25})
     assert comparison.names == ("A", "B")
@@ -79,12 +79,22 @@ def test_the_order_of_blocks_and_groups_changes_nothing(
 
 
 @given(values, st.lists(st.integers(-1000, 1000), min_size=20, max_size=20))
-def test_what_a_block_is_worth_does_not_matter(blocks: list[tuple[int, ...]], worth: list[int]) -> None:
-    moved = [tuple(value + extra for value in block) for block, extra in zip(blocks, worth, strict=False)]
+def test_an_offset_of_a_whole_block_changes_nothing(
+    blocks: list[tuple[int, ...]], offsets: list[int]
+) -> None:
+    moved = [tuple(value + extra for value in block) for block, extra in zip(blocks, offsets, strict=False)]
     one, other = compare_blocks(groups(blocks)), compare_blocks(groups(moved))
     assert one.p == pytest.approx(other.p)
     assert one.mean_ranks == pytest.approx(other.mean_ranks)
     assert [pair.p for pair in one.pairs] == pytest.approx([pair.p for pair in other.pairs])
+
+
+@pytest.mark.parametrize(("blocks", "tested"), [(4, False), (5, True)])
+def test_fewer_than_five_blocks_are_not_tested(blocks: int, tested: bool) -> None:
+    low, high = [float(n) for n in range(blocks)], [n + 1.5 for n in range(blocks)]
+    comparison = compare_blocks({"low": low, "high": high})
+    assert comparison.tested == tested
+    assert comparison.ranking() == ("high = low" if tested else "high, low")
 
 
 @given(st.lists(st.integers(-50, 50), min_size=1, max_size=20))
@@ -109,6 +119,9 @@ def test_a_small_advantage_in_every_block_is_found(given_values: list[float]) ->
 @given(values)
 def test_a_ranking_names_every_group_from_the_best_down(blocks: list[tuple[int, ...]]) -> None:
     comparison = compare_blocks(groups(blocks))
+    if not comparison.tested:
+        assert comparison.ranking() == ", ".join(comparison.names)
+        return
     assert comparison.ranking(0.0) == " = ".join(comparison.names)
     names = re.split(" [<>] ", comparison.ranking(1.1))
     assert names == list(comparison.names)
@@ -118,7 +131,7 @@ def test_a_ranking_names_every_group_from_the_best_down(blocks: list[tuple[int, 
 
 @settings(max_examples=15)
 @given(values)
-def test_a_pair_can_be_asked_for_from_both_sides(blocks: list[tuple[int, ...]]) -> None:
+def test_a_pair_is_found_in_both_orders(blocks: list[tuple[int, ...]]) -> None:
     comparison = compare_blocks(groups(blocks))
     for pair in comparison.pairs:
         there, back = (comparison.pair(pair.first, pair.second), comparison.pair(pair.second, pair.first))
@@ -133,6 +146,6 @@ def test_a_pair_can_be_asked_for_from_both_sides(blocks: list[tuple[int, ...]]) 
     "given_groups",
     [{"A": [1.0]}, {"A": [1.0], "B": [1.0, 2.0]}, {"A": [], "B": []}, {"A": [1.0], "B": [float("nan")]}],
 )
-def test_what_are_no_blocks_is_refused(given_groups: dict[str, list[float]]) -> None:
+def test_values_that_are_not_blocks_are_rejected(given_groups: dict[str, list[float]]) -> None:
     with pytest.raises(ValueError, match=r"^expected "):
         compare_blocks(given_groups)

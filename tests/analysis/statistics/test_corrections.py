@@ -1,4 +1,4 @@
-"""The list of corrections costs a command line nothing, and statsmodels knows all of them."""
+"""Tests of the list of corrections: cheap to import, and supported by statsmodels."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evoframe.analysis.statistics.corrections import CORRECTIONS, Correction
 HEAVY = "matplotlib", "pandas", "plotly", "scikit_posthocs", "scipy", "statsmodels"
 
 
-def test_no_library_of_statistics_is_loaded_for_it(tmp_path: object) -> None:
+def test_importing_the_list_loads_no_statistics_library(tmp_path: object) -> None:
     program = (
         "import sys, evoframe.analysis.statistics.corrections;"
         f"print([name for name in {HEAVY} if name in sys.modules])"
@@ -20,7 +20,7 @@ def test_no_library_of_statistics_is_loaded_for_it(tmp_path: object) -> None:
     assert python("-c", program).stdout.strip() == "[]"
 
 
-def test_each_is_one_that_statsmodels_knows_or_none() -> None:
+def test_statsmodels_supports_each_correction_but_none() -> None:
     assert get_args(Correction) == CORRECTIONS
     for correction in CORRECTIONS:
         if correction != "none":

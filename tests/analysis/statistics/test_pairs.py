@@ -1,4 +1,4 @@
-"""A pair is found from both sides, and a ranking is written with the signs of its neighbours."""
+"""Tests of pairs: look-up in both orders, and rankings with the signs of neighbors."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ pairs = st.builds(
 
 
 @given(pairs)
-def test_turned_twice_it_is_the_same(pair: BlockPair) -> None:
+def test_swapping_twice_returns_the_same_pair(pair: BlockPair) -> None:
     assert pair.turned().turned() == pair
     assert find_pair([pair], "A", "B") == pair
     assert find_pair([pair], "B", "A") == pair.turned()
 
 
 @given(pairs)
-def test_the_greater_one_comes_first(pair: BlockPair) -> None:
+def test_the_greater_group_comes_first(pair: BlockPair) -> None:
     found = oriented(pair)
     assert found.direction == abs(pair.direction)
     assert found in {pair, pair.turned()}
 
 
-def test_what_is_no_pair_is_refused() -> None:
+def test_an_unknown_pair_is_an_error() -> None:
     with pytest.raises(KeyError, match="A, C"):
         find_pair([BlockPair("A", "B", 1.0, 0.5, 0)], "A", "C")
 
 
 @given(st.lists(st.tuples(st.floats(0, 1), st.sampled_from([-1, 1])), min_size=1, max_size=6))
-def test_a_sign_is_about_its_neighbours(tests: list[tuple[float, int]]) -> None:
+def test_a_sign_compares_its_two_neighbors(tests: list[tuple[float, int]]) -> None:
     names = [f"G{number}" for number in range(len(tests) + 1)]
     neighbours = dict(zip(pairwise(names), tests, strict=True))
     found = []

@@ -1,6 +1,6 @@
-"""Data of reports: studies as tidy tables and views, and a run's champion with what can be drawn of it.
+"""Data of reports: studies as tidy tables and views, and a run's champion with its geometry and networks.
 
-Everything that reports read of runs and studies is read here, and checked where a plugin made it.
+Reports read runs and studies only through this subpackage, which validates the output of plugins.
 """
 
 from evoframe.analysis.data.champions import ChampionData, DrawnNetwork, load_champion

@@ -1,4 +1,4 @@
-"""What is shown of a run's champion: its body as it moves, and the networks that drew it."""
+"""The champion of a run as reports show it: its moving body, and the networks that encode it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from evoframe.registry import Plugins
 
 __all__ = ["ChampionData", "DrawnNetwork", "load_champion"]
 
-_FRAMES = 90  # enough for a smooth playback, few enough for a page
+_FRAMES = 90  # smooth playback at a moderate page size
 
 
 @attrs.frozen(eq=False)
@@ -33,10 +33,10 @@ class DrawnNetwork:
     """The network of one of the champion's genomes.
 
     Attributes:
-        population: Whose genome it is.
+        population: Population of the genome.
         graph: The network.
-        inputs: What its inputs are called; empty if the encoder does not say.
-        outputs: What its outputs are called; empty if the encoder does not say.
+        inputs: Names of its inputs; empty if the encoder does not provide them.
+        outputs: Names of its outputs; empty if the encoder does not provide them.
     """
 
     population: str
@@ -51,11 +51,12 @@ class ChampionData:
 
     Attributes:
         score: Its score.
-        unit: Of the score.
-        geometry: How it looks as it is simulated; ``None`` if its simulator does not say.
-        track: The point that its objective looks at; ``None`` if it is none that is drawn.
-        networks: Of the populations whose evolvers say what their networks look like.
-        verification: What is left of its score with one thing changed; ``None`` if nobody has looked.
+        unit: Unit of the score.
+        geometry: Its geometry over the simulated time; ``None`` if the simulator does not support geometries.
+        track: Name of the point that the objective records; ``None`` if the geometry does not have it.
+        networks: Networks of the populations whose evolvers support graphs.
+        verification: The champion's scores with one setting changed at a time; ``None`` if they were not
+            measured.
     """
 
     score: float
@@ -67,12 +68,12 @@ class ChampionData:
 
 
 def load_champion(run: Run, plugins: Plugins) -> ChampionData:
-    """Return what is shown of the champion of a run.
+    """Load the champion of a run.
 
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
-        InputError: It has no champion yet, or is damaged.
-        ComponentError: What its simulator or an evolver gives cannot be drawn.
+        InputError: The run has no champion yet, or is damaged.
+        ComponentError: The simulator or an evolver fails, or returns something that cannot be drawn.
     """
     job = read_job(run, None, (), plugins)
     [design], config = job.designs, job.config
@@ -102,7 +103,9 @@ def _networks(run: Run, config: RunConfig) -> Iterator[DrawnNetwork]:
             try:
                 drawn = population.evolver.component.graph(genome, encoder.inputs, encoder.outputs)
             except ValueError as error:
-                raise InputError(f"{run.directory}: the champion's genome of '{name}': {error}") from error
+                raise InputError(
+                    f"the champion's genome is damaged: {error}", source=run.directory, key=name
+                ) from error
         inputs = encoder.input_names if isinstance(encoder, SupportsInputNames) else ()
         outputs = encoder.output_names if isinstance(encoder, SupportsOutputNames) else ()
         yield DrawnNetwork(name, drawn, inputs, outputs)

@@ -33,7 +33,7 @@ __all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
 Yardstick: TypeAlias = Literal["score", "fitness"]
 
 YARDSTICKS: tuple[Yardstick, ...] = ("score", "fitness")
-"""The score of the best pair, which is the same measure for all, and the averaged fitness, as published."""
+"""Score of the best pair, which is comparable across aggregators, and best fitness, as published."""
 
 
 @attrs.frozen
@@ -41,16 +41,16 @@ class StudyData:
     """A study, and a row for each of its finished runs.
 
     Attributes:
-        label: What a person calls it.
-        keys: The keys of the grid, perhaps none. The last one is that whose values are compared.
-        unit: Of the scores.
-        planned: How many runs there shall be.
-        rows: Of the finished ones, in the order of work.
-        alike: Whether all configurations simulate and score in one way.
-        best_run: The directory of the run with the best pair, of those whose directories are there.
-        settings: The study as it stands in its file.
-        values: Key of the grid -> what stands for a value in rows -> the value, if it is a number or a text.
-        directory: Its directory.
+        label: Name of the study.
+        keys: Keys of the grid; may be empty. The values of the last key are compared.
+        unit: Unit of the scores.
+        planned: Number of planned runs.
+        rows: Rows of the finished runs, in the order of execution.
+        alike: True if all configurations simulate and score in the same way.
+        best_run: Directory of the run with the best pair, among the runs whose directories exist.
+        settings: Text of the study file.
+        values: Key of the grid -> text of a value in rows -> the value, if it is a number or a string.
+        directory: Directory of the study.
     """
 
     label: str
@@ -66,7 +66,7 @@ class StudyData:
 
     @property
     def frame(self) -> pd.DataFrame:
-        """One line for each run: the keys of the grid, and all figures."""
+        """One line per run: the keys of the grid, and all results."""
         others = {"settings", "score_curve", "fitness_curve"}
         return pd.DataFrame(
             [
@@ -77,7 +77,7 @@ class StudyData:
 
     @property
     def curves(self) -> pd.DataFrame:
-        """One line for each run and generation: the keys of the grid, and both yardsticks."""
+        """One line per run and generation: the keys of the grid, the score and the fitness."""
         return pd.DataFrame(
             [
                 {
@@ -98,11 +98,11 @@ class StudyData:
         return {key: self.values.get(key, {}).get(text, text) for key, text in row.settings.items()}
 
     def views(self, yardstick: Yardstick) -> list[View]:
-        """Return what is compared: the values of the last key, in a view for each combination of the others.
+        """Return a view for each combination of all keys but the last, which distinguishes its groups.
 
-        Where there are several, one more view compares the best of each: those with the greatest mean rank
-        on the *yardstick*, which rankings put first. Their names say where they come from, as in
-        ``WM (n = 2)``. A study whose grid is empty has one view of one group, ``all``.
+        If there are several views, one more compares the best group of each: the one with the greatest mean
+        rank on the *yardstick*, which is first in the ranking. Its name includes its view, as in
+        ``WM (n = 2)``. A study with an empty grid has one view of one group, ``all``.
         """
         if not self.keys:
             return [View(self.label, "group", {"all": self.rows})]
@@ -127,12 +127,12 @@ class StudyData:
 
 @attrs.frozen
 class View:
-    """Groups of runs that are compared.
+    """Groups of runs to compare.
 
     Attributes:
-        title: What they have in common: ``n = 2``.
-        key: What distinguishes them: ``aggregator``.
-        groups: Name -> the runs of each.
+        title: Setting that the groups share: ``n = 2``.
+        key: Setting that distinguishes the groups: ``aggregator``.
+        groups: Name -> runs of the group.
     """
 
     title: str
@@ -145,19 +145,19 @@ class View:
 
 
 def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> StudyData:
-    """Return a study and what is finished of it.
+    """Return a study and its finished runs.
 
     Args:
-        directory: Its directory.
-        plugins: The plugins that its configurations name; by default those that are installed.
+        directory: Directory of the study.
+        plugins: Plugins that its configurations name; by default the installed ones.
 
     Raises:
-        ConfigurationError: It cannot be read with these plugins.
-        InputError: It is no study's directory, or one of its runs is damaged.
+        ConfigurationError: The study cannot be read with these plugins.
+        InputError: *directory* does not contain a study, or one of its runs is damaged.
     """
     directory = Path(directory)
     if not is_file(directory / STUDY_FILE):
-        raise InputError(f"{directory}: is no study's directory: there is no {STUDY_FILE}")
+        raise InputError(f"found no {STUDY_FILE}, expected the directory of a study", source=directory)
     study = read_study(directory / STUDY_FILE, (), plugins or discover())
     imported = imported_rows(study, directory)
     statuses = survey(study, directory, imported, rows=True)

@@ -1,27 +1,38 @@
-"""What axes are called, and in which unit numbers are shown."""
+"""Titles of axes and columns, and the units in which reports show numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import pandas as pd
 
 from evoframe.analysis.data.studies import Yardstick
 
-__all__ = ["NAMES", "axis_title", "factor_of", "with_unit"]
+__all__ = ["NAMES", "axis_title", "factor_of", "in_unit", "with_unit"]
 
-NAMES: Mapping[Yardstick, str] = {"score": "best pair simulated", "fitness": "best fitness"}
+NAMES: Mapping[Yardstick, str] = {"score": "best score", "fitness": "best fitness"}
 
 
 def factor_of(unit: str) -> float:
-    """Return what values in *unit* are multiplied by to be shown: displacements are millimetres."""
+    """Return the factor from *unit* to the unit of reports: meters become millimeters."""
     return 1000.0 if unit == "m" else 1.0
 
 
 def axis_title(name: str, unit: str) -> str:
-    """Return the title of an axis of values in *unit*."""
+    """Return the title of an axis or column with its unit, as in ``best score (mm)``."""
     shown = {"m": " (mm)", "": ""}.get(unit, f" ({unit})")
     return f"{name}{shown}"
 
 
-def with_unit(value: float, unit: str) -> str:
-    """Return a value as it is told: ``5.041 mm``."""
-    return f"{value * factor_of(unit):.4g} {'mm' if unit == 'm' else unit}".rstrip()
+def in_unit(table: pd.DataFrame, columns: Sequence[str], unit: str) -> pd.DataFrame:
+    """Return a table whose *columns* are converted from *unit* to the unit of reports, which titles name."""
+    shown = table.copy()
+    if unit == "m":
+        for column in columns:
+            shown[column] = [None if pd.isna(value) else value * 1000.0 for value in table[column]]
+    return shown.rename(columns={column: axis_title(column, unit) for column in columns})
+
+
+def with_unit(value: float, unit: str, digits: int = 4) -> str:
+    """Return a value with its unit, as in ``5.041 mm``."""
+    return f"{value * factor_of(unit):.{digits}g} {'mm' if unit == 'm' else unit}".rstrip()

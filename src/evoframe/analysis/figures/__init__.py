@@ -1,7 +1,7 @@
-"""Figures for print: matplotlib figures of studies, runs, bodies and networks, to be changed or saved.
+"""Figures for print: matplotlib figures of studies, runs, bodies and networks, to edit or save.
 
-:func:`curves`, :func:`finals` and :func:`ranks` draw a view of a study, :func:`draw_lines` what develops over
-generations, :func:`body` a design and :func:`network` the network of a genome.
+:func:`curves`, :func:`finals` and :func:`ranks` draw a view of a study, :func:`draw_lines` values over
+generations, :func:`body` a design, and :func:`network` the network of a genome.
 """
 
 from evoframe.analysis.figures.bodies import body

@@ -1,4 +1,4 @@
-"""Bodies as figures, fit for an article."""
+"""Figures of bodies for print."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from evoframe.contract import Geometry, GeometryPart
 
 __all__ = ["body"]
 
-_BESIDE, _ABOVE, _BELOW, _TALLEST = 0.12, 0.40, 0.30, 2.0  # inches: of margins, and of the body itself
-_ELEVATION, _AZIMUTH = 24.0, -62.0  # degrees; the free end, at the greatest x, is in front
+_BESIDE, _ABOVE, _BELOW, _TALLEST = 0.12, 0.40, 0.30, 2.0  # inches: margins, and greatest height of the body
+_ELEVATION, _AZIMUTH = 24.0, -62.0  # degrees; the free end, at the greatest x, faces the viewer
 _LIGHT = np.array([0.30, -0.65, 0.70])  # from the front, above
 
 
 @plain
 def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
-    """Return a design as it looks at one time, with what surrounds other parts translucent.
+    """Draw a design at one time, with translucent parts around opaque ones.
 
     Args:
-        geometry: What is drawn.
-        title: What stands above it.
-        frame: Which of its times.
+        geometry: The geometry of the design.
+        title: Title of the figure.
+        frame: Index of the time.
     """
     figure = Figure(figsize=(COLUMN, COLUMN))
     axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
@@ -43,7 +43,7 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
         )
         for part in geometry.parts
     ]
-    # One collection: faces of several are not drawn from back to front.
+    # A single collection, because matplotlib sorts faces by depth only within a collection.
     axes.add_collection3d(
         Poly3DCollection(
             np.concatenate(corners),
@@ -74,12 +74,12 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
 
 
 def _write(figure: Figure, below: float, text: str, size: int) -> None:
-    """Write a line, so many inches below the upper edge."""
+    """Write a line of text, *below* inches below the upper edge."""
     figure.text(0.5, 1.0 - below / figure.get_figheight(), text, size=size, ha="center", va="top")
 
 
 def _shaded(part: GeometryPart, faces: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the colour of each face, ``float64[m, 4]``, darker where it looks away from the light."""
+    """Return the color of each face, ``float64[m, 4]``, darker if it faces away from the light."""
     across = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
     lengths = np.linalg.norm(across, axis=1, keepdims=True)
     normals = np.divide(across, lengths, out=np.zeros_like(across), where=lengths > 0)
@@ -89,7 +89,7 @@ def _shaded(part: GeometryPart, faces: NDArray[np.float64]) -> NDArray[np.float6
 
 
 def _arrange(axes: Any, least: NDArray[np.float64], most: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Show what is between two corners, with equal axes, and return its extent."""
+    """Fit the axes, with equal scales, to the box between two corners, and return its extent."""
     extent = np.maximum(most - least, 1e-9)
     axes.set(xlim=(least[0], least[0] + extent[0]), ylim=(least[1], least[1] + extent[1]))
     axes.set_zlim(least[2], least[2] + extent[2])
@@ -101,7 +101,7 @@ def _arrange(axes: Any, least: NDArray[np.float64], most: NDArray[np.float64]) -
 
 
 def _draw_directions(axes: Any, corner: NDArray[np.float64], length: float) -> NDArray[np.float64]:
-    """Draw an arrow along each axis beside a corner, and return where their letters stand."""
+    """Draw an arrow along each axis near a corner, and return the positions of their letters."""
     start = corner - length * np.array([0.9, 0.9, 0.3])
     tips = start + 1.35 * length * np.eye(3)
     for name, along, tip in zip("xyz", np.eye(3), tips, strict=True):
@@ -111,11 +111,11 @@ def _draw_directions(axes: Any, corner: NDArray[np.float64], length: float) -> N
 
 
 def _fit(figure: Figure, axes: Any, points: NDArray[np.float64]) -> None:
-    """Let *points* fill the width, or the greatest height, with room for what is written above and below."""
+    """Scale the axes so that *points* fill the width or the greatest height between the texts."""
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
     shown = axes.transAxes.inverted().transform(axes.transData.transform(np.column_stack([x, y])))
     (left, low), (right, high) = shown.min(axis=0), shown.max(axis=0)
-    side = min((COLUMN - 2 * _BESIDE) / (right - left), _TALLEST / (high - low))  # of the square of all axes
+    side = min((COLUMN - 2 * _BESIDE) / (right - left), _TALLEST / (high - low))  # of the square of the axes
     height = _ABOVE + side * (high - low) + _BELOW
     figure.set_figheight(height)
     corner = 0.5 * (COLUMN - side * (left + right)) / COLUMN, (_BELOW - side * low) / height

@@ -1,9 +1,9 @@
-"""Where the nodes and links of a network stand in a drawing from left to right.
+"""Layout of networks in columns, from left to right.
 
-The steps are those of Sugiyama, Tagawa and Toda (1981): a node stands one column after the last one that it
-depends on, a link that passes columns has a track of its own in each of them, and columns are ordered by
-barycentres so that few links cross. The libraries that do this need the program Graphviz, or are under the
-GPL, which this project is not.
+The steps are those of Sugiyama, Tagawa and Toda (1981): a node is placed one column after the last node that
+it depends on, a link that passes columns has its own track in each of them, and columns are sorted by
+barycenters to reduce crossings. Existing libraries require the program Graphviz, or are under the GPL,
+unlike this project.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from evoframe.contract import NetworkGraph, NetworkLink
 __all__ = ["Layout", "effective", "layered"]
 
 _SWEEPS = 24
-_TRACK = 0.4  # rows that a passing link takes
-_PORT = 0.12  # rows between links at one side of a node
-_PORTS = 0.45  # rows of all of them together
-_STRAIGHT = 4.0  # how much more than a node a track insists on its height
-_ALONE = 1e-3  # how much what is joined to nothing does
+_TRACK = 0.4  # height of the track of a passing link, in rows
+_PORT = 0.12  # distance of links at one side of a node, in rows
+_PORTS = 0.45  # greatest height of all links at one side of a node, in rows
+_STRAIGHT = 4.0  # weight of a track's height, relative to that of a node
+_ALONE = 1e-3  # weight of the height of a node without links
 
 
 @attrs.frozen
 class Layout:
-    """A drawing in columns and rows; heights grow downwards.
+    """A layout in columns and rows; heights increase downwards.
 
     Attributes:
-        columns: Node -> column, from 0 at the left.
-        heights: Node -> height of its middle, rows.
-        routes: For each link of the graph its heights where it leaves its start, in each column that it
-            passes, and where it reaches its end. A link that goes back, for it closes a cycle, passes none.
-        returns: Whether there are links that go back.
-        rows: How many rows the drawing is high.
+        columns: Node -> column; 0 is the leftmost.
+        heights: Node -> height of its center, in rows.
+        routes: For each link of the graph, its heights at its start, in each column that it passes, and at
+            its end. A backward link, which closes a cycle, passes no columns.
+        returns: True if there are backward links.
+        rows: Height of the layout, in rows.
     """
 
     columns: Mapping[int, int]
@@ -53,7 +53,7 @@ class Layout:
 
 @attrs.frozen(order=True)
 class _Item:
-    """What takes room in a column: a node, or the track of a link."""
+    """An item of a column: a node, or the track of a link."""
 
     column: int
     id: int  # of the node, or the index of the link
@@ -69,7 +69,7 @@ Joined: TypeAlias = Mapping[_Item, Sequence[_Item]]
 
 @attrs.frozen
 class _Grid:
-    """The items of all columns in their order, and who is joined to whom in the next column."""
+    """The items of all columns in order, and the items that each is linked to in the next column."""
 
     columns: list[list[_Item]]
     before: Joined
@@ -77,7 +77,7 @@ class _Grid:
 
 
 def effective(graph: NetworkGraph) -> NetworkGraph:
-    """Return *graph* without the nodes that no output depends on; inputs and outputs stay."""
+    """Return *graph* without the nodes that no output depends on; inputs and outputs are kept."""
     before: dict[int, list[int]] = defaultdict(list)
     for link in graph.links:
         before[link.end].append(link.start)
@@ -94,10 +94,10 @@ def effective(graph: NetworkGraph) -> NetworkGraph:
 
 
 def layered(graph: NetworkGraph) -> Layout:
-    """Return the layout of *graph*, always the same for the same graph.
+    """Return the layout of *graph*, which is deterministic.
 
-    Inputs stand in the first column and outputs in the last, in their order. An output that other nodes
-    depend on stands before those.
+    Inputs are in the first column and outputs in the last, in their order. An output that other nodes depend
+    on is placed before these.
     """
     columns = _columns(graph)
     paths = []
@@ -133,7 +133,7 @@ def _columns(graph: NetworkGraph) -> dict[int, int]:
         if node not in columns:
             columns[node] = 1 + max((columns[start] for start in before[node]), default=0)
     hidden = set(columns) - {*graph.inputs, *graph.outputs}
-    for node in hidden:  # what depends on nothing stands beside what depends on it
+    for node in hidden:  # nodes without inputs are placed just before the first node that depends on them
         if not before[node] and after[node]:
             columns[node] = min(columns[end] for end in after[node]) - 1
     last = max([1, *(columns[node] for node in graph.outputs), *(1 + columns[node] for node in hidden)])
@@ -141,7 +141,7 @@ def _columns(graph: NetworkGraph) -> dict[int, int]:
 
 
 def _sorted(nodes: Iterable[int], links: Iterable[NetworkLink]) -> tuple[list[int], list[NetworkLink]]:
-    """Return the nodes, each after those that it depends on, and the links that close no cycle."""
+    """Return the nodes in topological order, and the links without those that close a cycle."""
     forward = [link for link in links if link.start != link.end]
     while True:
         sorter = TopologicalSorter(dict.fromkeys(nodes, ()))
@@ -169,7 +169,7 @@ def _grid(graph: NetworkGraph, columns: Mapping[int, int], paths: Sequence[Seque
 
 
 def _ordered(grid: _Grid) -> _Grid:
-    """Return the grid with the inner columns in the best order of many sweeps."""
+    """Return the grid with the order of inner columns that has the fewest crossings in many sweeps."""
     best, fewest = grid, _crossings(grid)
     for sweep in range(_SWEEPS):
         if fewest == 0:
@@ -182,7 +182,7 @@ def _ordered(grid: _Grid) -> _Grid:
 
 
 def _swept(grid: _Grid, leftwards: bool) -> _Grid:
-    """Return the grid with each inner column ordered by the mean places of those joined on one side."""
+    """Return the grid with each inner column sorted by the mean positions of linked items on one side."""
     columns = [list(column) for column in grid.columns]
     places = _places(grid)
     joined = grid.after if leftwards else grid.before
@@ -198,8 +198,8 @@ def _places(grid: _Grid) -> dict[_Item, float]:
     return {item: float(place) for column in grid.columns for place, item in enumerate(column)}
 
 
-def _mean(values: Sequence[float], otherwise: float) -> float:
-    return sum(values) / len(values) if values else otherwise
+def _mean(values: Sequence[float], default: float) -> float:
+    return sum(values) / len(values) if values else default
 
 
 def _crossings(grid: _Grid) -> int:
@@ -214,7 +214,7 @@ def _crossings(grid: _Grid) -> int:
 
 
 def _heights(grid: _Grid) -> dict[_Item, float]:
-    """Return the height of each item: near those that it is joined to, and clear of its neighbours."""
+    """Return the height of each item: close to its linked items, and without overlap in its column."""
     heights: dict[_Item, float] = {}
     for column in grid.columns:
         heights |= zip(column, (_stack(column) - _stack(column).mean()).tolist(), strict=True)
@@ -230,7 +230,7 @@ def _both(grid: _Grid) -> Joined:
 
 
 def _straightened(grid: _Grid) -> Joined:
-    """Return who is joined to whom, but tracks to all of their link, which then bends little."""
+    """Return the linked items of each item; for tracks, all tracks of their link, which keeps it straight."""
     tracks = defaultdict(list)
     for item in (item for column in grid.columns for item in column if item.is_track):
         tracks[item.id].append(item)
@@ -240,7 +240,7 @@ def _straightened(grid: _Grid) -> Joined:
 def _placed(
     column: Sequence[_Item], joined: Joined, heights: Mapping[_Item, float], grid: _Grid
 ) -> dict[_Item, float]:
-    """Return the heights nearest to those of who is joined, at which no two items of a column overlap."""
+    """Return the heights closest to those of linked items without overlap in the column."""
     wanted = {i: _mean([heights[j] for j in joined.get(i, ())], heights[i]) for i in column}
     alone = {i for i in column if i not in grid.before and i not in grid.after}
     middle = _mean([wanted[i] for i in column if i not in alone], 0.0)
@@ -259,9 +259,9 @@ def _stack(column: Sequence[_Item]) -> NDArray[np.float64]:
 def _ports(
     links: Sequence[NetworkLink], paths: Sequence[Sequence[_Item]], middles: Mapping[_Item, float]
 ) -> dict[tuple[int, bool], float]:
-    """Return for each link, and whether it is its start, the height at the node there.
+    """Return the heights of both ends of each link: (index of the link, True for its start) -> height.
 
-    At each side of a node the links stand in the order of where they come from or go to.
+    At each side of a node, links are sorted by the heights of their other ends.
     """
     sides: dict[tuple[int, bool], list[tuple[float, int]]] = defaultdict(list)
     for index, (link, path) in enumerate(zip(links, paths, strict=True)):

@@ -1,4 +1,4 @@
-"""What develops over the generations of a run, or of many, as lines to be drawn."""
+"""Lines over the generations of a run, or of the runs of a study."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from evoframe.study import score_curve
 __all__ = ["Line", "lines_of_run", "lines_of_view"]
 
 _RESAMPLES = 2000
-_BATCH = 100  # of them at a time: all would need gigabytes for many runs, and give the same
+_BATCH = 100  # resamples at a time; all at once would take gigabytes, with the same result
 _BLACK, _DOTTED = 6, 2
 
 Floats = NDArray[np.float64]
@@ -27,11 +27,11 @@ class Line:
     """A value for each generation, from 0 up.
 
     Attributes:
-        name: What a legend calls it.
-        values: ``float64[generations]``, as they are shown.
-        colour: Which of the colours it has.
-        dash: Which of the dashes it has.
-        band: The least and the greatest values that are probable, ``float64[generations]`` each.
+        name: Name in the legend.
+        values: ``float64[generations]``, in the shown unit.
+        colour: Index of the color.
+        dash: Index of the dash pattern.
+        band: Lower and upper bound of the confidence band, ``float64[generations]`` each.
     """
 
     name: str
@@ -44,14 +44,14 @@ class Line:
 def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line]:
     """Return the mean over the runs of each group, with its 95 % band (bootstrap over runs).
 
-    Groups of fewer than five runs have no band: it would be much too narrow. Imported rows may have no
-    curves: they do not count, and a group of nothing else has no line. Where the runs of a group are of
-    different lengths, its line ends with the shortest: means of fewer would jump.
+    Groups of fewer than five runs have no band, because it would be much too narrow. Runs without curves,
+    such as imported rows, are ignored; a group that has only such runs has no line. The line of a group ends
+    with its shortest run, because means of fewer runs would jump.
 
     Args:
         view: The groups.
-        yardstick: What is drawn.
-        unit: Of scores; metres become millimetres.
+        yardstick: The measure to draw.
+        unit: Unit of the values; meters become millimeters.
     """
     drawn = []
     for number, (name, rows) in enumerate(view.groups.items()):
@@ -65,11 +65,11 @@ def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line
 
 
 def lines_of_run(run: Run, unit: str = "") -> list[Line]:
-    """Return the score of the best pair so far, and of each population the best and the mean fitness.
+    """Return the score of the best pair so far, and the best and mean fitness of each population.
 
     Args:
         run: The run, finished or not.
-        unit: Of scores; metres become millimetres.
+        unit: Unit of the values; meters become millimeters.
     """
     turns, factor = run.turns(), factor_of(unit)
     populations = list(run.config["populations"])
@@ -80,11 +80,14 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
             values = np.array([row[what] for row in rows]) * factor
             drawn.append(Line(f"{population}: {what} fitness", values, number, dash))
     score = np.array(score_curve(run, len(populations))) * factor
-    return [*drawn, Line(NAMES["score"], score, _BLACK, _DOTTED)]  # on top: the best fitness is hardly less
+    return [
+        *drawn,
+        Line(NAMES["score"], score, _BLACK, _DOTTED),
+    ]  # drawn last, because the best fitness is almost as high
 
 
 def _band(curves: Floats) -> tuple[Floats, Floats]:
-    """Return the 95 % interval of the mean of each column; a gap where a run has no value."""
+    """Return the 95 % interval of the mean of each column; NaN if a run has no value there."""
     known = np.isfinite(curves).all(axis=0)
     low = np.where(known, curves[0], np.nan)
     high = low.copy()

@@ -1,4 +1,4 @@
-"""A network as a figure, fit for an article: inputs at the left, outputs at the right."""
+"""Figures of networks for print: inputs at the left, outputs at the right."""
 
 from __future__ import annotations
 
@@ -24,48 +24,48 @@ POSITIVE, NEGATIVE = COLOURS[:2]
 INK, GREY, PALE = "#202020", "#606060", "#B0B0B0"
 DASHES = (0, (4, 1.5))
 
-# Inches, but for sizes of fonts and widths of lines, which are points.
-_WIDTHS = {COLUMN: 0.3, BOTH_COLUMNS: 0.18}  # with the least gap between columns of nodes
+# In inches, except for font sizes and line widths, which are in points.
+_WIDTHS = {COLUMN: 0.3, BOTH_COLUMNS: 0.18}  # width of the figure -> smallest gap between columns of nodes
 _ROW, _LINE, _PAD, _MARGIN = 0.31, 0.1, 0.05, 0.05
-_LANE = 0.3  # above the network, for links that go back
-_TITLE, _NOTE, _LEGEND = 0.17, 0.13, 0.16  # heights of lines
+_LANE = 0.3  # above the network, for backward links
+_TITLE, _NOTE, _LEGEND = 0.17, 0.13, 0.16  # heights of lines of text
 _SIZE = 6.5
 _THINNEST, _THICKEST = 0.5, 2.2
-_LONGEST = 8  # letters of a label in one line
-_MOST = 500  # nodes and links: seconds, and more than anybody can read
+_LONGEST = 8  # characters of a label on one line
+_MOST = 500  # nodes and links; larger figures take seconds and are not readable
 
 
 class TooLargeError(ValueError):
-    """A network has more nodes and links than anybody can read in a figure."""
+    """A network with too many nodes and links for a readable figure."""
 
 
 @plain
 def network(
     graph: NetworkGraph, input_names: Sequence[str], output_names: Sequence[str], title: str = ""
 ) -> Figure:
-    """Return a drawing of *graph*: boxes with the names of activations, links as wide as their weights.
+    """Draw *graph*: boxes with the names of activations, and links as wide as their weights.
 
-    Positive weights are blue lines, negative ones vermilion dashes. Nodes that no output depends on are left
-    out and counted below the title; inputs that no output depends on are pale. A link that goes back, for it
-    closes a cycle, is an arrow. The figure is as wide as a column of an article (3.5 inches) or its text (7
-    inches); a network that needs more gets it, and has to be scaled down.
+    Positive weights are solid blue lines, negative ones dashed vermilion lines. Nodes that no output depends
+    on are omitted, and counted below the title; inputs that no output depends on are pale. A backward link,
+    which closes a cycle, is an arrow. The figure is as wide as one column of an article (3.5 inches) or two
+    (7 inches); the figure of a wider network has to be scaled down.
 
     Args:
         graph: The network.
-        input_names: One name for each input; with none they are numbered.
-        output_names: One name for each output; with none they are numbered.
-        title: Of the figure.
+        input_names: A name for each input; if empty, inputs are numbered.
+        output_names: A name for each output; if empty, outputs are numbered.
+        title: Title of the figure.
 
     Raises:
         TooLargeError: The network has more than 500 nodes and links.
-        ValueError: The names are not as many as the inputs and outputs.
+        ValueError: The number of names differs from the number of inputs or outputs.
     """
     input_names = _names("input", graph.inputs, input_names)
     output_names = _names("output", graph.outputs, output_names)
     drawn = effective(graph)
     if len(drawn.labels) + len(drawn.links) > _MOST:
         raise TooLargeError(
-            f"{len(drawn.labels)} nodes and {len(drawn.links)} links are too many for a figure"
+            f"{len(drawn.labels)} nodes and {len(drawn.links)} links exceed the {_MOST} of a readable figure"
         )
     layout = layered(drawn)
     labels = {**dict(sorted(drawn.labels.items())), **dict(zip(graph.inputs, input_names, strict=True))}
@@ -73,7 +73,7 @@ def network(
     sheet = _sheet(layout, wrapped, output_names)
     hidden, shown = (len(set(g.labels) - {*g.inputs, *g.outputs}) for g in (graph, drawn))
     rest = "has no effect and is" if hidden - shown == 1 else "have no effect and are"
-    note = f"{hidden - shown} of {hidden} hidden nodes {rest} left out" if hidden > shown else ""
+    note = f"{hidden - shown} of {hidden} hidden nodes {rest} omitted" if hidden > shown else ""
     title_lines = textwrap.wrap(title, int(13 * sheet.width))
     figure, axes = _figure(sheet, title_lines, note, _legend(drawn.links))
     drawing = _Drawing(axes, sheet, drawn, layout, wrapped)
@@ -87,19 +87,21 @@ def _names(what: str, nodes: Sequence[int], names: Sequence[str]) -> Sequence[st
     if not names:
         return [f"{what} {number}" for number, _ in enumerate(nodes, start=1)]
     if len(names) != len(nodes):
-        raise ValueError(f"{len(names)} names for {len(nodes)} {what}s: {', '.join(names)}")
+        raise ValueError(
+            f"{len(names)} names for {len(nodes)} {what}s ({', '.join(names)}), expected one each"
+        )
     return names
 
 
 @attrs.frozen
 class _Sheet:
-    """Where things are on paper, in inches from the upper left corner of the network.
+    """Positions on paper, in inches from the upper left corner of the network.
 
     Attributes:
-        width: Of the figure.
-        top: Of what is drawn; below 0 where links go back.
-        bottom: Of what is drawn.
-        columns: The left and right edge of each column.
+        width: Width of the figure.
+        top: Upper edge of the drawing; negative if there are backward links.
+        bottom: Lower edge of the drawing.
+        columns: Left and right edge of each column.
     """
 
     width: float
@@ -110,7 +112,7 @@ class _Sheet:
 
 @attrs.frozen
 class _Drawing:
-    """A network that is put on paper."""
+    """A network being drawn."""
 
     axes: Axes
     sheet: _Sheet
@@ -141,7 +143,7 @@ class _Drawing:
             self._write((left + right) / 2, middle, label, color=colour, ha="center")
 
     def links(self) -> None:
-        """Draw each link, those of large weight below the others."""
+        """Draw each link; links of large weight are below the others."""
         largest = max((abs(link.weight) for link in self.graph.links), default=1.0)
         pairs = zip(self.graph.links, self.layout.routes, strict=True)
         for link, route in sorted(pairs, key=lambda pair: -abs(pair[0].weight)):
@@ -161,7 +163,7 @@ class _Drawing:
             )
 
     def names(self, output_names: Iterable[str]) -> None:
-        """Write the name of each output at its right, or below it where links go on."""
+        """Write the name of each output to its right, or below it if links continue to the right."""
         last = len(self.sheet.columns) - 1
         for node, name in zip(self.graph.outputs, output_names, strict=True):
             left, right = self._edges(node)
@@ -180,7 +182,7 @@ class _Drawing:
         return self.layout.heights[node] * _ROW
 
     def _path(self, link: NetworkLink, route: Sequence[float]) -> Path:
-        """Return a curve that changes its height between columns only, where no node is."""
+        """Return a curve that changes its height only between columns, where there are no nodes."""
         first, y = self.layout.columns[link.start], route[0] * _ROW
         vertices, codes = [(self._edges(link.start)[1], y)], [Path.MOVETO]
         for column, height in enumerate(route[1:], start=first):
@@ -192,14 +194,13 @@ class _Drawing:
         return Path([*vertices, (self._edges(link.end)[0], y)], [*codes, Path.LINETO])
 
     def _return(self, link: NetworkLink, route: Sequence[float]) -> Path:
-        """Return a curve from the right of a node over the network to the left of another."""
+        """Return a curve from the right of a node, above the network, to the left of another."""
         right, left = self._edges(link.start)[1], self._edges(link.end)[0] - 0.01
         above = [(right + _LANE, self.sheet.top), (left - _LANE, self.sheet.top)]
         codes = [Path.MOVETO, *[Path.CURVE4] * 3]
         return Path([(right, route[0] * _ROW), *above, (left, route[-1] * _ROW)], codes)
 
     def _write(self, x: float, y: float, words: str, **style: Any) -> None:
-        # The names of others may have dollar signs, which are no formulas.
         self.axes.text(
             x,
             y,
@@ -221,7 +222,7 @@ def _width(weight: float, largest: float) -> float:
 
 
 def _wrapped(label: str) -> str:
-    """Return a label in at most two lines, broken after underscores and at blanks."""
+    """Return a label on at most two lines, broken at blanks and after underscores."""
     lines, width = [label], _LONGEST + 2
     while len(label) > _LONGEST and len(lines := textwrap.wrap(label.replace("_", "_ "), width)) > 2:
         width += 1
@@ -229,7 +230,7 @@ def _wrapped(label: str) -> str:
 
 
 def _text_width(text: str) -> float:
-    return text_width(text, _SIZE, "bold")  # the widest that is written
+    return text_width(text, _SIZE, "bold")  # the widest style in use
 
 
 def _box_width(label: str) -> float:
@@ -251,7 +252,7 @@ def _sheet(layout: Layout, labels: Mapping[int, str], output_names: Iterable[str
 
 
 def _figure(sheet: _Sheet, title: Sequence[str], note: str, legend: Sequence[Line2D]) -> tuple[Figure, Axes]:
-    """Return a figure whose axes are in inches, downwards, with its words above and below."""
+    """Return a figure with texts above and below axes in inches, which increase downwards."""
     n_columns = 2 if sheet.width == min(_WIDTHS) else 4
     above = _MARGIN + _TITLE * len(title) + _NOTE * bool(note) + _MARGIN
     below = _MARGIN + _LEGEND * -(-len(legend) // n_columns) + _MARGIN
@@ -267,7 +268,7 @@ def _figure(sheet: _Sheet, title: Sequence[str], note: str, legend: Sequence[Lin
 
 
 def _legend(links: Iterable[NetworkLink]) -> list[Line2D]:
-    """Return the signs that there are, and the least and the largest weight."""
+    """Return legend entries of the signs that occur, and of the smallest and largest weight."""
     weights = sorted((link.weight for link in links), key=abs)
     signs = [Line2D([], [], color=POSITIVE, lw=1.2, label="positive weight")] * any(w >= 0 for w in weights)
     if any(w < 0 for w in weights):

@@ -1,4 +1,4 @@
-"""Texts of figures as they are: names come from files and folders, and a dollar sign begins no formula."""
+"""Figures with literal texts: names of files may contain dollar signs, which must not start a formula."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ P = ParamSpec("P")
 
 
 def plain(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Let a function that draws a figure take all texts as they are."""
+    """Decorate a function that draws a figure, so that matplotlib does not parse formulas in its texts."""
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:

@@ -1,4 +1,4 @@
-"""Figures of a study, fit for an article: matplotlib figures, to be changed or saved by whoever asks."""
+"""Figures of studies for print."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ from evoframe.analysis.statistics.groups import FEWEST, Comparison
 
 __all__ = ["curves", "curves_of", "draw_lines", "finals", "ranks"]
 
-_TITLE, _SIZE = 9, 7  # points: of titles, and of names
-_INSIDE = COLUMN - 0.2  # inches: what a figure has room for beside its margins
-_NAME = 1.35  # inches, of a group's name at the left of its values
-_ROW, _RANKS, _BARS = 0.32, 0.22, 0.17  # inches: from a group, a rank or a bar to the next at least
-_RANKED = 1.0  # inches, of a group's name at an end of the line of ranks
-_GAP = 0.03  # inches, between a line and its label
-_HANDLE, _APART = 0.28, 0.2  # inches: what stands before a name in a legend, and between two columns of it
-_MOST = 4  # columns of a legend
-_LINE = 0.13  # inches, of a legend
+_TITLE, _SIZE = 9, 7  # font sizes of titles and names, in points
+_INSIDE = COLUMN - 0.2  # width between the margins, in inches
+_NAME = 1.35  # width of a group's name at the left of its values, in inches
+_ROW, _RANKS, _BARS = 0.32, 0.22, 0.17  # smallest distances of groups, ranks and bars, in inches
+_RANKED = 1.0  # width of a group's name beside the line of ranks, in inches
+_GAP = 0.03  # distance between a line and its label, in inches
+_HANDLE, _APART = 0.28, 0.2  # width of a handle, and distance of columns, in inches
+_MOST = 4  # greatest number of columns of a legend
+_LINE = 0.13  # height of a line of a legend, in inches
 
 
 def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
-    """Return the mean over runs for each generation, with its 95 % band (bootstrap over runs).
+    """Draw the mean over the runs of each group by generation, with its 95 % band (bootstrap over runs).
 
     Args:
         view: The groups.
-        yardstick: What is drawn.
-        unit: Of scores; metres are shown as millimetres.
+        yardstick: The measure to draw.
+        unit: Unit of the values; meters are shown as millimeters.
 
     Raises:
         ValueError: No run has a curve.
@@ -50,25 +50,25 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
 
 
 def curves_of(drawn: Sequence[Line], view: View, yardstick: Yardstick, unit: str = "") -> Figure:
-    """Return :func:`curves` from the lines of the view, whose bands take a while."""
+    """Draw :func:`curves` from existing lines of the view, whose bands take long to compute."""
     return draw_lines(drawn, axis_title(NAMES[yardstick], unit), view.title, f"{view.key}: runs")
 
 
 @plain
 def draw_lines(drawn: Sequence[Line], label: str, title: str, legend: str | None = None) -> Figure:
-    """Return lines over generations.
+    """Draw lines over generations.
 
     Args:
-        drawn: What is drawn.
-        label: Of the vertical axis.
-        title: What stands above it.
-        legend: What stands above the names of lines.
+        drawn: The lines.
+        label: Label of the vertical axis.
+        title: Title of the figure.
+        legend: Title of the legend.
 
     Raises:
-        ValueError: There are none.
+        ValueError: There are no lines.
     """
     if not drawn:
-        raise ValueError("there are no lines to be drawn")
+        raise ValueError("no lines to draw, expected at least one")
     names = [broken(line.name, _INSIDE - _HANDLE, _SIZE) for line in drawn]
     n_columns, n_lines = _legend_shape(names)
     below = broken(legend or "", _INSIDE, _SIZE)
@@ -97,9 +97,9 @@ def draw_lines(drawn: Sequence[Line], label: str, title: str, legend: str | None
 
 
 def _legend_shape(names: Sequence[str]) -> tuple[int, int]:
-    """Return how many columns a legend has room for, and how many lines the longest of them has."""
+    """Return the number of columns that fit into a legend, and the number of lines of the longest."""
     for n_columns in range(min(_MOST, len(names)), 0, -1):
-        # As matplotlib puts names into a legend: the first columns have one more.
+        # As in matplotlib's legends, the first columns have one more name.
         columns = [part.tolist() for part in np.array_split(np.array(names, dtype=object), n_columns)]
         widths = [_HANDLE + max(text_width(name, _SIZE) for name in column) for column in columns]
         if n_columns == 1 or sum(widths) + _APART * (n_columns - 1) <= _INSIDE:
@@ -109,16 +109,16 @@ def _legend_shape(names: Sequence[str]) -> tuple[int, int]:
 
 @plain
 def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Comparison | None = None) -> Figure:
-    """Return every run's final value, with box plots, and letters: what shares one is not different.
+    """Draw the final value of every run, with box plots; groups that share a letter do not differ.
 
-    The groups stand one below the other, where long names have room. Those of fewer than five runs have no
-    box (Krzywinski and Altman 2014, Nature Methods 11, 119).
+    The groups are arranged from top to bottom, which leaves space for long names. Groups of fewer than five
+    runs have no box (Krzywinski and Altman 2014, Nature Methods 11, 119).
 
     Args:
         view: The groups.
-        yardstick: What is drawn.
-        unit: Of scores; metres are shown as millimetres.
-        comparison: Of the groups, for the letters.
+        yardstick: The measure to draw.
+        unit: Unit of the values; meters are shown as millimeters.
+        comparison: Comparison of the groups, which provides the letters.
     """
     groups = view.values(yardstick)
     labels = [
@@ -127,7 +127,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     ]
     height = max(0.8, len(groups) * row_height(labels, _ROW))
     figure, axes = _figure(view.title, 0.75 + height)
-    rng = np.random.default_rng(0)  # of the places of points, nothing else
+    rng = np.random.default_rng(0)  # only for the vertical positions of points
     for place, values in enumerate(groups.values()):
         scaled = np.array(values) * factor_of(unit)
         boxed = len(values) >= FEWEST
@@ -155,23 +155,23 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
             va="center",
             size=8,
         )
-    axes.locator_params(axis="x", nbins=6)  # more would nearly touch beside long names
+    axes.locator_params(axis="x", nbins=6)  # more labels would nearly touch if names are long
     axes.set_yticks(range(len(groups)), labels)
-    axes.set_ylim(len(groups) - 0.5, -0.5)  # the first on top
+    axes.set_ylim(len(groups) - 0.5, -0.5)  # the first group at the top
     axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=broken(view.key, height, 8))
     return figure
 
 
 @plain
 def ranks(comparison: Comparison, title: str) -> Figure:
-    """Return the mean rank of each group on a line, the best at the right; bars join what is not different.
+    """Draw the mean ranks on a line, the best at the right; bars join groups that do not differ.
 
-    Source: the critical difference diagrams of Demsar 2006, here with the p-values of the comparison.
+    Source: critical difference diagrams of Demsar 2006, here with the p-values of the comparison.
     """
     names = [group.name for group in comparison.groups]
     labels = [broken(f"{group.name}: {group.mean_rank:.3g}", _RANKED, _SIZE) for group in comparison.groups]
     figure, axes = _figure(title, 0.66)
-    numbers = range(len(names))  # the picture would depend on the hashes of names
+    numbers = range(len(names))  # with names, the figure would depend on their hashes
     p = pd.DataFrame(
         [[1.0 if i == j else comparison.pair(names[i], names[j]).p for j in numbers] for i in numbers]
     )
@@ -187,14 +187,14 @@ def ranks(comparison: Comparison, title: str) -> Figure:
         color_palette=["black"] * len(names),
         elbow_props={"lw": 0.9},
         marker_props={"s": 14},
-        crossbar_props={"marker": "o", "ms": 4},  # at those that are joined, not at what lies between
+        crossbar_props={"marker": "o", "ms": 4},  # marks the joined groups, not those between them
     )
     for text in drawn["labels"]:
         text.set_text(labels[int(text.get_text())])
-        gap = -_GAP if text.get_horizontalalignment() == "right" else _GAP  # else it touches its line
+        gap = -_GAP if text.get_horizontalalignment() == "right" else _GAP  # keeps the label off its line
         text.set_transform(text.get_transform() + ScaledTranslation(gap, 0, figure.dpi_scale_trans))
     axes.locator_params(axis="x", nbins=5)
-    axes.set_xlabel("mean rank (more is better)")
+    axes.set_xlabel("mean rank (higher is better)")
     axes.xaxis.set_label_position("top")
     height = _spaced(axes, drawn, row_height(labels, _RANKS))
     figure.set_figheight(figure.get_figheight() + height)
@@ -202,7 +202,7 @@ def ranks(comparison: Comparison, title: str) -> Figure:
 
 
 def _spaced(axes: Axes, drawn: Mapping[str, Any], row: float) -> float:
-    """Give bars and ranks, which lie at -1, -2, ..., the room that they need, and return how much it is."""
+    """Space out bars and ranks, which start at -1, -2, ..., and return the height that they take."""
     bars = -min((bar.get_ydata()[0] for [bar] in drawn["crossbars"]), default=0)
 
     def below(levels: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -218,7 +218,7 @@ def _spaced(axes: Axes, drawn: Mapping[str, Any], row: float) -> float:
 
 
 def _figure(title: str, height: float) -> tuple[Figure, Axes]:
-    """Return a figure as wide as a column, higher by the lines of its title."""
+    """Return a figure as wide as a column, taller if its title has several lines."""
     above = broken(title, _INSIDE, _TITLE)
     figure = Figure(figsize=(COLUMN, height + 0.17 * above.count("\n")), layout="constrained")
     figure.suptitle(above, size=_TITLE)

@@ -1,6 +1,6 @@
-"""Output: figures and tables as files, their names, the list of a report's files, and texts of templates.
+"""Output: figures and tables as files, their names, the list of a report's files, and texts from templates.
 
-The same content always gives the same bytes. All sentences of conclusions stand in the folder ``templates``.
+The same content always gives the same bytes. All sentences of conclusions are in the folder ``templates``.
 """
 
 from evoframe.analysis.output.listing import LIST_FILE, listed, settle

@@ -1,4 +1,4 @@
-"""Which files a report consists of: the next one in its place removes those that it does not have."""
+"""List of the files of a report, from which the next report in the same directory removes outdated files."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from evoframe.files import LARGEST_DOCUMENT, is_file, read_text
 __all__ = ["LIST_FILE", "listed", "settle"]
 
 LIST_FILE = "report.json"
-"""In a report's directory: ``files``, the name of each of its other files -> its SHA-256."""
+"""File in a report's directory with ``files``: name of each other file of the report -> its SHA-256."""
 
 
 def listed(directory: Path) -> dict[str, str]:
-    """Return the files of the report that is there: name -> SHA-256; nothing if there is none.
+    """Return the files of the report in *directory*: name -> SHA-256; empty if there is no report.
 
     Raises:
-        InputError: There is a file of that name that is no list of a report's files.
+        InputError: The file :data:`LIST_FILE` exists, but is not a list of a report's files.
     """
     path = directory / LIST_FILE
     if not is_file(path):
@@ -30,32 +30,33 @@ def listed(directory: Path) -> dict[str, str]:
     try:
         files = json.loads(read_text(path, LARGEST_DOCUMENT))["files"].items()
         if not all(re.fullmatch(r"[^/\0]+", name) and name not in {".", ".."} for name, _ in files):
-            raise ValueError("a file of another directory")  # noqa: TRY301 - as all others
+            raise ValueError("a file outside of the directory")  # noqa: TRY301 - handled as the others
     except (AttributeError, ValueError, TypeError, KeyError, RecursionError) as error:
         raise InputError(
-            f"{path}: is no list of a report's files; remove it, or choose another place with --out"
+            "is not a list of a report's files; remove it, or choose another directory with --out",
+            source=path,
         ) from error
     return {name: str(digest) for name, digest in files}
 
 
 def settle(directory: Path, before: Mapping[str, str], files: Iterable[Path]) -> Path:
-    """Remove the files of an earlier report that were not written again, and list those of this one.
+    """Remove the files of an earlier report that this one does not overwrite, and list the files of this one.
 
-    A file that somebody has changed since is not the report's any more, and stays.
+    A file that was modified since the earlier report is kept.
 
     Args:
-        directory: Of the report.
-        before: What :func:`listed` said before it was written.
-        files: What was written.
+        directory: Directory of the report.
+        before: Result of :func:`listed` before the report was written.
+        files: Files of the new report.
 
     Returns:
-        The list.
+        Path of the list.
 
     Raises:
-        RunError: A file cannot be removed, or the list not be written.
+        RunError: A file cannot be removed, or the list cannot be written.
     """
     now = {path.name: _digest(path) for path in files}
-    kept = {name.casefold() for name in now}  # some file systems know no capitals
+    kept = {name.casefold() for name in now}  # some file systems ignore case
     for name, digest in before.items():
         if name.casefold() not in kept:
             _remove(directory / name, digest)
@@ -65,16 +66,16 @@ def settle(directory: Path, before: Mapping[str, str], files: Iterable[Path]) ->
 
 
 def _remove(path: Path, digest: str) -> None:
-    """Remove a file that still has the content that we wrote."""
+    """Remove a file if its content is still that of the earlier report."""
     try:
         if path.is_file() and not path.is_symlink() and _digest(path) == digest:
             path.unlink()
     except OSError as error:
-        raise RunError(f"{path}: cannot be removed: {error.strerror}") from error
+        raise RunError(f"cannot be removed: {error.strerror}", source=path) from error
 
 
 def _digest(path: Path) -> str:
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError as error:
-        raise RunError(f"{path}: cannot be read: {error.strerror}") from error
+        raise RunError(f"cannot be read: {error.strerror}", source=path) from error

@@ -1,4 +1,4 @@
-"""Short names for files and links, made of titles: different ones for different titles."""
+"""Short, distinct names for files and links, derived from titles."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _LONGEST = 60
 def slugs(titles: Iterable[str]) -> list[str]:
     """Return a name of ASCII letters, digits, dots and dashes for each title.
 
-    No two are alike, on file systems that do not know capitals either: those that would be are numbered. They
-    have about 60 letters at most, as file names must not be endless.
+    The names differ even on file systems that ignore case: duplicates are numbered. A name has about 60
+    characters at most.
     """
-    found: dict[str, str] = {}  # as file systems without capitals see it -> the name
+    found: dict[str, str] = {}  # name without case -> name
     for title in titles:
         slug = slugify(
             title,
@@ -25,7 +25,7 @@ def slugs(titles: Iterable[str]) -> list[str]:
             decimal=False,
             hexadecimal=False,  # a title is not HTML
             lowercase=False,
-            allow_unicode=True,  # else names would depend on which library is there to transliterate
+            allow_unicode=True,  # transliteration would depend on the installed libraries
             regex_pattern=r"[^A-Za-z0-9.]+",
             replacements=[("= -", "= minus "), (",", " ")],  # a number with commas keeps its parts
         )

@@ -1,10 +1,10 @@
-"""Figures and tables as files: the same content gives the same bytes, with nothing of the time in them."""
+"""Figures and tables as files; the same content gives the same bytes, without timestamps."""
 
 from __future__ import annotations
 
 import io
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
+from evoframe.analysis.output.latex import latex_table
 from evoframe.errors import InputError
 from evoframe.files import write_atomically
 
@@ -23,33 +24,31 @@ _FORMATS: dict[str, dict[str, Any]] = {
     "png": {"metadata": {"Software": None}, "dpi": 300},
 }
 
-_SIGNS = str.maketrans({"<": r"\textless{}", ">": r"\textgreater{}"})  # others in LaTeX's usual fonts
-
 
 def prepare_directory(directory: Path) -> Path:
-    """Make a directory for a report, if it is not there, and see that it can be written to.
+    """Create a directory for a report unless it exists, and check that it is writable.
 
     Raises:
-        InputError: It cannot be made, or not be written to.
+        InputError: The directory cannot be created, or is not writable.
     """
     try:
         directory.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=directory):
             pass
     except OSError as error:
-        raise InputError(f"{directory}: cannot be used for a report: {error.strerror}") from error
+        raise InputError(f"cannot be used for a report: {error.strerror}", source=directory) from error
     return directory
 
 
 def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
-    """Return a figure as PDF, SVG and PNG, with the same layout in each: name of a file -> its bytes.
+    """Return a figure as PDF, SVG and PNG with the same layout: file name -> bytes.
 
     Args:
-        figure: What is drawn.
-        name: Name of the files, without an ending. It makes the ids in an SVG file its own.
+        figure: The figure.
+        name: Name of the files without extension. The ids in the SVG file depend on it.
     """
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # else it is arranged anew for each format, and slightly otherwise
+    figure.set_layout_engine("none")  # otherwise each format gets a slightly different layout
     files = {}
     for ending, options in _FORMATS.items():
         data = io.BytesIO()
@@ -59,18 +58,24 @@ def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
     return files
 
 
-def table_files(table: pd.DataFrame, name: str) -> dict[str, bytes]:
-    """Return a table as CSV, and as LaTeX (package booktabs) with four digits: name of a file -> its bytes.
+def table_files(
+    table: pd.DataFrame,
+    name: str,
+    article: pd.DataFrame | None = None,
+    by: Sequence[str] = (),
+    wrapped: str = "",
+) -> dict[str, bytes]:
+    """Return a table as CSV with all digits, and as LaTeX for one column of an article: file name -> bytes.
 
     Args:
         table: The table.
-        name: Name of the files, without an ending.
+        name: Name of the files without extension.
+        article: The table to print in LaTeX, if it has fewer columns or digits.
+        by: As for :func:`latex_table`, as is *wrapped*.
+        wrapped: Column of long texts.
     """
-    latex = table.to_latex(index=False, na_rep="-", float_format="%.4g", escape=True)
-    return {
-        f"{name}.csv": table.to_csv(index=False).encode(),
-        f"{name}.tex": latex.translate(_SIGNS).encode(),
-    }
+    latex = latex_table(table if article is None else article, by, wrapped)
+    return {f"{name}.csv": table.to_csv(index=False).encode(), f"{name}.tex": latex.encode()}
 
 
 def write_files(files: Mapping[str, bytes], directory: Path) -> list[Path]:
@@ -78,10 +83,10 @@ def write_files(files: Mapping[str, bytes], directory: Path) -> list[Path]:
 
     Args:
         files: Name -> bytes.
-        directory: Where to; it is there.
+        directory: An existing directory.
 
     Raises:
-        RunError: One of them cannot be written.
+        RunError: A file cannot be written.
     """
     for name, data in files.items():
         write_atomically(directory / name, data)

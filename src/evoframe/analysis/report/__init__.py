@@ -1,4 +1,4 @@
-"""Reports of runs and studies: figures, tables, conclusions and the page, as files (:func:`report`)."""
+"""Reports of runs and studies: figures, tables, conclusions and an HTML page (:func:`report`)."""
 
 from evoframe.analysis.report.api import report
 from evoframe.record.run import Report

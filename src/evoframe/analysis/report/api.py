@@ -1,4 +1,4 @@
-"""Reports of runs and studies: drafted, and written in place of earlier ones."""
+"""Writing of the reports of runs and studies."""
 
 from __future__ import annotations
 
@@ -30,28 +30,28 @@ def report(
 ) -> Report:
     """Write figures, tables, conclusions and a page of a run or a study, finished or not.
 
-    Files of an earlier report in the same place that are not written again are removed, unless somebody has
-    changed them.
+    Outdated files of an earlier report in the same directory are removed, unless they were modified.
 
     Args:
         source: A run, its directory, or the directory of a study.
-        out: Directory of the report; by default ``report`` in that of the run or study.
+        out: Directory of the report; by default ``report`` in the directory of the run or study.
         correction: Correction of pairwise p-values for multiple comparisons; ``none`` is what the paper does.
-        plugins: The plugins that configurations name; by default those that are installed.
+        plugins: Plugins that configurations name; by default the installed ones.
 
     Raises:
         ConfigurationError: The source cannot be read with these plugins.
         InputError: The source is neither a run nor a study, has nothing to report yet, or is damaged; or
-            *out* cannot be created, or is a directory of something else.
+            *out* cannot be created, or contains a run, a study or a measurement.
         ComponentError: A simulator or an evolver fails, or returns something that cannot be drawn.
         RunError: The report cannot be written.
     """
     directory = source.directory if isinstance(source, Run) else Path(source)
     target = directory / "report" if out is None else Path(out)
-    for name in (CONFIG_FILE, STUDY_FILE, SETTING_FILE):  # between those files some would have our names
+    for name in (CONFIG_FILE, STUDY_FILE, SETTING_FILE):  # a report there could overwrite their files
         if is_file(target / name):
             raise InputError(
-                f"{target}: is no place for a report: it has a {name}; choose another with --out"
+                f"contains a {name}, so no report is written here; choose another directory with --out",
+                source=target,
             )
     before = listed(target)
     draft = _draft(source, directory, plugins or discover(), correction)
@@ -69,5 +69,6 @@ def _draft(source: Run | str | Path, directory: Path, plugins: Plugins, correcti
         with open_run(directory) as run:
             return draft_of_run(run, plugins, correction)
     raise InputError(
-        f"{directory}: is no directory of a run or a study: there is no {CONFIG_FILE} and no {STUDY_FILE}"
+        f"found no {CONFIG_FILE} and no {STUDY_FILE}, expected the directory of a run or a study",
+        source=directory,
     )

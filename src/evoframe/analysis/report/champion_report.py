@@ -1,4 +1,4 @@
-"""The champion in a report: figures of its body and its networks, and sections of the page."""
+"""The champion in a report: figures of its body and networks, and sections of the page."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ __all__ = ["champion_part"]
 
 
 def champion_part(data: ChampionData, whose: str) -> Part:
-    """Return what a report has of a champion.
+    """Return the sections and files that show a champion.
 
     Args:
         data: The champion.
-        whose: Where it comes from, as in ``the best pair that was simulated``.
+        whose: Origin of the champion, as in ``the best pair of the run``.
     """
     score, files = with_unit(data.score, data.unit), dict[str, bytes]()
     blocks: list[Block] = [Words(f"The champion, {whose}, scores {score}.")]
     if data.geometry is None:
-        blocks.append(Words("Its simulator does not say what its designs look like."))
+        blocks.append(Words("Its simulator does not support geometries, so the body is not drawn."))
     else:
-        caption = "The champion as it is simulated, with displacements exaggerated. Drag to turn it."
+        caption = "Simulated motion of the champion, with exaggerated displacements. Drag to rotate."
         blocks.append(Motion(caption, data.geometry, data.track))
         files |= figure_files(body(data.geometry, score), "champion-body")
     if data.verification is not None:
         table = verification_table(data.verification)
-        caption = "What is left of its score with one thing changed at a time (evoframe verify)."
+        caption = "Score of the champion with one setting changed at a time (evoframe verify)."
         blocks.append(Table(caption, table))
         files |= table_files(table, "verification")
     networks: list[Block] = []
@@ -43,5 +43,7 @@ def champion_part(data: ChampionData, whose: str) -> Part:
         else:
             name = f"champion-network-{each.population}"
             files |= figure_files(figure, name)
-            networks.append(Picture(f"The network that drew its {each.population}.", files[f"{name}.svg"]))
+            networks.append(
+                Picture(f"Network that encodes the {each.population} of the champion.", files[f"{name}.svg"])
+            )
     return Part([Section("Champion", blocks), Section("Networks", [*networks, *undrawn])], files)

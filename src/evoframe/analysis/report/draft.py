@@ -1,4 +1,4 @@
-"""A report before it is written."""
+"""Contents of a report before they are written."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ __all__ = ["Draft"]
 
 @attrs.frozen(eq=False)
 class Draft:
-    """A report before it is written.
+    """Contents of a report before they are written.
 
     Attributes:
-        title: Heading of the page: the run or study.
-        lead: Its state, in a line below the heading.
-        sections: Of the page.
-        files: Name -> bytes, beside the page.
-        words: What the command prints.
+        title: Heading of the page: the name of the run or study.
+        lead: Line below the heading: the state of the run or study.
+        sections: Sections of the page.
+        files: Name -> bytes of all files except the page.
+        words: Text that the command prints.
     """
 
     title: str
@@ -30,5 +30,5 @@ class Draft:
     words: str
 
     def all_files(self) -> dict[str, bytes]:
-        """Return all files of the report, the page among them: name -> bytes."""
+        """Return all files of the report, including the page: name -> bytes."""
         return {**self.files, "report.html": page(self.title, self.lead, self.sections)}

@@ -1,4 +1,4 @@
-"""The report of a run: figures, tables, and sections of the page."""
+"""Report of a run: figures, tables, and sections of the page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pandas as pd
 
 from evoframe.analysis.data.champions import ChampionData, load_champion
 from evoframe.analysis.data.tables import versions_table
-from evoframe.analysis.data.units import axis_title, with_unit
+from evoframe.analysis.data.units import axis_title, in_unit, with_unit
 from evoframe.analysis.figures.lines import lines_of_run
 from evoframe.analysis.figures.studies import draw_lines
 from evoframe.analysis.output.writing import figure_files, table_files
@@ -22,7 +22,7 @@ from evoframe.registry import Plugins
 
 __all__ = ["draft_of_run"]
 
-_CAPTION = "The score of the best pair so far, and the fitness of each population, in each generation."
+_CAPTION = "Score of the best pair so far, and best and mean fitness of each population, by generation."
 
 
 def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") -> Draft:
@@ -30,28 +30,28 @@ def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") ->
 
     Args:
         run: The run, finished or not.
-        plugins: The plugins that its configuration names.
-        correction: Correction of the p-values of pairs of bodies, if its robustness was measured.
+        plugins: Plugins that its configuration names.
+        correction: Correction of pairwise p-values for multiple comparisons, if robustness was measured.
 
     Raises:
         ConfigurationError: The run cannot be read with these plugins.
-        InputError: It has no champion yet, or is damaged.
-        ComponentError: Its simulator or an evolver fails, or returns something that cannot be drawn.
+        InputError: The run has no champion yet, or is damaged.
+        ComponentError: The simulator or an evolver fails, or returns something that cannot be drawn.
     """
     champion = load_champion(run, plugins)
     title, lead = shown_name(run.directory), _lead(run, champion)
     curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
     summary = _summary(run, champion)
-    shown = champion_part(champion, "the best pair that was simulated")
+    shown = champion_part(champion, "the best pair of the run")
     robustness = robustness_part(run.directory, plugins, correction)
     first, *others = shown.sections
     progress: list[Block] = [
         Chart(_CAPTION, lines_chart(curves, label)),
-        Table("The final figures.", summary),
+        Table("Final results.", summary),
     ]
     configuration: list[Block] = [
         Source(CONFIG_FILE, read_text(run.directory / CONFIG_FILE, LARGEST_DOCUMENT)),
-        Table("What made it.", versions_table(run.config.get("provenance", {}))),
+        Table("Versions and hardware.", versions_table(run.config.get("provenance", {}))),
     ]
     return Draft(
         title,
@@ -76,12 +76,12 @@ def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") ->
 def _lead(run: Run, champion: ChampionData) -> str:
     work, score = run.workload(), with_unit(champion.score, champion.unit)
     pairs = sum(row["pairs"] for row in work)
-    state = "finished" if run.finished() else "not finished yet"
+    state = "finished" if run.finished() else "not finished"
     return f"best pair {score}; {len(work) - 1:,} turns, {pairs:,} pairs; {state}"
 
 
 def _summary(run: Run, champion: ChampionData) -> pd.DataFrame:
-    """Return the final figures, which are those of the last turn as long as the run goes on."""
+    """Return the results of the last turn, which are final if the run is finished."""
     last = {row["population"]: row for row in run.turns()}
     figures = {"best pair": champion.score}
     for name in run.config["populations"]:
@@ -89,4 +89,5 @@ def _summary(run: Run, champion: ChampionData) -> pd.DataFrame:
         figures[f"{name}: mean fitness"] = last[name]["mean"]
     if run.finished():
         figures["pair of the fittest"] = run.summary()["fittest_pair_score"]
-    return pd.DataFrame({"figure": list(figures), f"value ({champion.unit or 1})": list(figures.values())})
+    table = pd.DataFrame({"figure": list(figures), "value": list(figures.values())})
+    return in_unit(table, ["value"], champion.unit)

@@ -1,4 +1,4 @@
-"""The report of a study: figures, tables, words, and sections of the page."""
+"""Report of a study: figures, tables, conclusions, and sections of the page."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ from evoframe.analysis.data.studies import StudyData
 from evoframe.analysis.data.tables import (
     Compared,
     comparisons,
+    pairs_article,
     pairs_table,
+    ranking_article,
     ranking_table,
+    summary_article,
     summary_table,
     versions_table,
 )
@@ -29,6 +32,7 @@ from evoframe.analysis.report.champion_report import champion_part
 from evoframe.analysis.report.draft import Draft
 from evoframe.analysis.robustness.section import robustness_part
 from evoframe.analysis.statistics.corrections import Correction
+from evoframe.analysis.statistics.groups import FEWEST
 from evoframe.analysis.statistics.words import conclusion
 from evoframe.errors import InputError
 from evoframe.record import open_run
@@ -37,12 +41,16 @@ from evoframe.study import STUDY_FILE
 
 __all__ = ["draft_of_study"]
 
+_HEADING = ("heading",)
 _RANKINGS = (
-    "Rankings in the paper's notation, from the greatest mean rank down. What stands between two neighbours "
-    "is said of these two: = is not found to differ. Others may differ, as letters and pairs say."
+    "Rankings by decreasing mean rank, in the paper's notation. Each sign compares only its two neighbors: > "
+    "is a significant difference, = is none. Letters and pairs, below, compare all groups."
 )
-_SUMMARY = "How the values of each group lie; groups that share a letter are not found to differ."
-_PAIRS = "All pairs of groups: Dunn's test, and how often the first is the greater (A12)."
+_SUMMARY = "Statistics of each group; groups that share a letter do not differ significantly."
+_PAIRS = (
+    "All pairs of groups: p-value of Dunn's test, and A12, the probability that a run of the first group "
+    "exceeds one of the second."
+)
 
 
 def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "holm") -> Draft:
@@ -50,16 +58,19 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
 
     Args:
         data: The study, finished or not.
-        plugins: The plugins that the configuration of its best run names.
-        correction: Correction of pairwise p-values; ``none`` is what the paper does.
+        plugins: Plugins that the configuration of its best run names.
+        correction: Correction of pairwise p-values for multiple comparisons; the paper uses ``none``.
 
     Raises:
-        ConfigurationError: Its best run cannot be read with these plugins.
+        ConfigurationError: The best run cannot be read with these plugins.
         InputError: None of its runs is finished, or one is damaged.
         ComponentError: A simulator or an evolver fails, or returns something that cannot be drawn.
     """
     if not data.rows:
-        raise InputError(f"{data.label}: no run of this study is finished, so there is nothing to report")
+        raise InputError(
+            "found no finished run, so there is nothing to report; finish one with evoframe study",
+            source=data.label,
+        )
     robustness = robustness_part(data.directory, plugins, correction)
     found = comparisons(data, correction)
     shown = [_Shown(each, data.unit) for each in found]
@@ -88,9 +99,9 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
         ],
         files={
             **files,
-            **table_files(summary, "summary"),
-            **table_files(pairs, "pairs"),
-            **table_files(ranking, "ranking"),
+            **table_files(summary, "summary", summary_article(found, data.unit), _HEADING),
+            **table_files(pairs, "pairs", pairs_article(found), _HEADING),
+            **table_files(ranking, "ranking", ranking_article(found), _HEADING, wrapped="ranking"),
             **champion.files,
             **robustness.files,
             "conclusions.txt": words.encode(),
@@ -100,67 +111,69 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
 
 
 def _best_run(data: StudyData, plugins: Plugins) -> tuple[Part, Sequence[Block]]:
-    """Return what is shown of the champion of the best run that is there, and of what made it."""
+    """Return the champion of the best run whose directory exists, and the versions that produced it."""
     if data.best_run is None:
         return Part(), ()
     with open_run(data.best_run) as run:
         champion = load_champion(run, plugins)
     place = data.best_run.relative_to(data.directory).as_posix()
     made_by = versions_table(run.config.get("provenance", {}))
-    whose = f"of the best run whose directory is here ({place})"
-    return champion_part(champion, whose), [Table("What made the best run.", made_by)]
+    whose = f"the best pair of {place}"
+    return champion_part(champion, whose), [Table("Versions and hardware of the best run.", made_by)]
 
 
 @attrs.frozen(slots=False)
 class _Shown:
-    """A view on one yardstick, as a report shows it."""
+    """Figures, text and charts of a view on one yardstick."""
 
     compared: Compared
     unit: str
 
     @functools.cached_property
     def lines(self) -> list[Line]:
-        """Its groups over generations, which figures and charts draw; none if no run has a curve."""
+        """The groups over generations; empty if no run has a curve."""
         return lines_of_view(self.compared.view, self.compared.yardstick, self.unit)
 
     @property
     def name(self) -> str:
-        """The name that its files are made of."""
+        """The name from which file names are derived."""
         return f"{self.compared.yardstick} {self.compared.view.title}"
 
     @property
     def heading(self) -> str:
-        """What is compared by what."""
+        """The view, the measure, and the compared setting."""
         view = self.compared.view
         return f"{view.title}, {NAMES[self.compared.yardstick]} by {view.key}"
 
     @functools.cached_property
     def said(self) -> list[str]:
-        """Its ranking, and a paragraph on what that is worth; a sentence if there is one group."""
+        """The ranking and a paragraph of conclusions; one sentence if nothing can be compared."""
         if self.compared.comparison is None:
-            return [written("alone.txt", group=self.compared.groups[0])]
+            return [written("alone.txt", groups=self.compared.groups, fewest=FEWEST)]
         measure = f"the {NAMES[self.compared.yardstick]}"
         return [self.compared.comparison.ranking, conclusion(self.compared.comparison, measure)]
 
     def figures(self, slug: str) -> dict[str, bytes]:
-        """Return its figures, as files whose names end with *slug*."""
+        """Return the figures as files whose names end with *slug*."""
         view, yardstick, comparison = self.compared.view, self.compared.yardstick, self.compared.comparison
         files: dict[str, bytes] = {}
         if self.lines:
             files |= figure_files(curves_of(self.lines, view, yardstick, self.unit), f"curves-{slug}")
         files |= figure_files(finals(view, yardstick, self.unit, comparison), f"finals-{slug}")
-        if comparison is not None:
+        if comparison is not None and comparison.tested:
             files |= figure_files(ranks(comparison, self.heading), f"ranks-{slug}")
         return files
 
     def blocks(self) -> list[Block]:
-        """Return what a page has of it."""
+        """Return the blocks of the page."""
         view, name = self.compared.view, NAMES[self.compared.yardstick]
         first, *more = self.said
-        blocks: list[Block] = [Words(f"The {name} by {view.key}: {first}"), *map(Words, more)]
+        blocks: list[Block] = [Words(f"{name.capitalize()} by {view.key}: {first}"), *map(Words, more)]
         if self.lines:
-            bands = ", with 95 % bands (bootstrap)" if all(line.band for line in self.lines) else ""
+            bands = ", with 95 % bootstrap bands" if all(line.band for line in self.lines) else ""
             plot = lines_chart(self.lines, axis_title(name, self.unit))
-            blocks.append(Chart(f"The {name} in each generation: mean over runs{bands}.", plot))
+            so_far = " so far" if self.compared.yardstick == "score" else ""
+            caption = f"{name.capitalize()}{so_far} by generation: mean over runs{bands}."
+            blocks.append(Chart(caption, plot))
         plot = finals_chart(view, self.compared.yardstick, self.unit)
-        return [*blocks, Chart(f"The {name} of every run in the end.", plot)]
+        return [*blocks, Chart(f"{name.capitalize()} of every run, final values.", plot)]

@@ -1,6 +1,6 @@
-"""Findings of a measurement of robustness: statistics, tables, figure, words and files.
+"""Findings of a measurement of robustness: statistics, tables, figure, conclusions and files.
 
-:func:`find` compares the groups of a measurement; the others show what it found.
+:func:`find` compares the groups of a measurement; the other functions present the findings.
 """
 
 from evoframe.analysis.robustness.figure import violins

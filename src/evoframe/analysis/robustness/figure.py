@@ -1,4 +1,4 @@
-"""The paper's robustness figure: how the scores of bodies with random controllers lie."""
+"""The paper's robustness figure: distributions of the scores of bodies with random controllers."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from evoframe.analysis.data.units import factor_of
+from evoframe.analysis.data.units import axis_title, factor_of
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, broken, row_height
 from evoframe.robustness import Robustness
 
 __all__ = ["violins"]
 
-_NAME, _SIZE = 1.35, 7  # inches, of a group's name at the left of its values; points, of its letters
-_ROW = 0.32  # inches, from a group to the next at least
-_GRID = 200  # points of a density
-_BREADTH = 0.8  # of the distance between two groups
-_NOISE = 1e-9  # of values: what differs by less is equal, and has no density
+_NAME, _SIZE = 1.35, 7  # width of a group's name in inches; font size in points
+_ROW = 0.32  # smallest distance between two groups in inches
+_GRID = 200  # points at which a density is computed
+_BREADTH = 0.8  # width of a violin, relative to the distance between two groups
+_NOISE = 1e-9  # relative; values that differ by less count as equal, and have no density
 
 
 @plain
 def violins(measured: Robustness) -> Figure:
-    """Return a violin for each group: density, extremes, quartiles and median of all its scores.
+    """Draw a violin for each group: density, extremes, quartiles and median of all its scores.
 
-    Where a group has several bodies, ticks show the median of each. Metres are shown as millimetres;
-    simulations that diverged are left out, and counted at the label.
+    In a group of several bodies, ticks show the median of each body. Meters are shown as millimeters. The
+    figure excludes diverged simulations; the label of the group counts them.
 
     Args:
         measured: The measurement.
@@ -48,14 +48,13 @@ def violins(measured: Robustness) -> Figure:
             medians = [np.median(own) * factor for c in columns if len(own := measured.values([c]))]
             axes.plot(medians, np.full(len(medians), place), "|", color="black", ms=9, mew=0.6, zorder=3)
     axes.set_yticks(range(len(groups)), labels, size=_SIZE)
-    axes.set_ylim(len(groups) - 0.4, -0.6)  # the first on top
+    axes.set_ylim(len(groups) - 0.4, -0.6)  # the first group at the top
     axes.axvline(0.0, color="0.6", lw=0.6, zorder=0)
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.tick_params(axis="y", length=0)
     axes.tick_params(axis="x", labelsize=7)
-    axes.locator_params(axis="x", nbins=6)  # more would nearly touch
-    unit = measured.setting.unit
-    axes.set_xlabel({"m": "displacement (mm)", "": "score"}.get(unit, f"score ({unit})"), size=8)
+    axes.locator_params(axis="x", nbins=6)  # more labels would nearly touch
+    axes.set_xlabel(axis_title("score", measured.setting.unit), size=8)
     bodies, controllers = len(measured.setting.bodies), measured.setting.controllers
     shared = f"\nthe same for all {bodies} bodies" if bodies > 1 else ""
     drawn = "1 random controller" if controllers == 1 else f"{controllers:,} random controllers"
@@ -64,7 +63,7 @@ def violins(measured: Robustness) -> Figure:
 
 
 def _violin(axes: Axes, place: int, values: NDArray[np.float64], colour: str) -> None:
-    """Draw density, extremes, quartiles and median of one group."""
+    """Draw the density, extremes, quartiles and median of one group."""
     if not len(values):
         return
     low, first, middle, third, high = np.quantile(values, [0.0, 0.25, 0.5, 0.75, 1.0])
@@ -92,7 +91,7 @@ def _labels(measured: Robustness) -> list[str]:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """Return the names, without the first folders of long paths if that leaves them different."""
+    """Return the names with long paths shortened, unless two names would become equal."""
     parts = [name.split("/") for name in names]
     short = ["/".join(part if len(part) < 4 else ["...", *part[-2:]]) for part in parts]
     return short if len(set(short)) == len(names) else list(names)

@@ -1,4 +1,4 @@
-"""What was made of a measurement, in files: figure, tables and conclusions, beside its scores."""
+"""Files of a measurement: its figure, tables and conclusions, written next to its scores."""
 
 from __future__ import annotations
 
@@ -8,10 +8,21 @@ from typing import Any
 
 import pandas as pd
 
+from evoframe.analysis.data.units import in_unit
 from evoframe.analysis.output.writing import figure_files, prepare_directory, table_files, write_files
 from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.findings import Findings
-from evoframe.analysis.robustness.tables import bodies_table, groups_table, pairs_table, ranking_table
+from evoframe.analysis.robustness.tables import (
+    SCORES,
+    bodies_article,
+    bodies_table,
+    groups_article,
+    groups_table,
+    pairs_article,
+    pairs_table,
+    ranking_article,
+    ranking_table,
+)
 from evoframe.analysis.robustness.words import conclusions
 from evoframe.robustness import document_of, write_measurement
 
@@ -23,31 +34,41 @@ def write_robustness(found: Findings, directory: str | Path) -> list[Path]:
 
     Args:
         found: The measurement and its tests.
-        directory: Where to; files of an earlier measurement are replaced.
+        directory: Directory of the files; those of an earlier measurement are overwritten.
 
     Returns:
-        What was written.
+        The paths of the files.
 
     Raises:
-        InputError: The directory cannot be made.
-        RunError: It cannot be written.
+        InputError: The directory cannot be created, or is not writable.
+        RunError: A file cannot be written.
     """
     directory = prepare_directory(Path(directory))
     return [*write_measurement(found.measured, directory), *write_findings(found, directory)]
 
 
 def write_findings(found: Findings, directory: Path) -> list[Path]:
-    """Write the figure, tables and conclusions of a measurement, beside its scores.
+    """Write the figure, tables and conclusions of a measurement, but not its scores.
 
     Returns:
-        What was written.
+        The paths of the files.
 
     Raises:
-        RunError: It cannot be written.
+        RunError: A file cannot be written.
     """
     files = {"conclusions.txt": conclusions(found).encode()}
-    for name, table in _all_tables(found).items():
-        files |= table_files(table, name)
+    unit = found.measured.setting.unit
+    tables = _all_tables(found)
+    for name in ("groups", "bodies"):
+        tables[name] = in_unit(tables[name], SCORES, unit)
+    articles = {
+        "groups": groups_article(found),
+        "bodies": bodies_article(found.measured),
+        "pairs": pairs_article(found),
+        "ranking": ranking_article(found),
+    }
+    for name, table in tables.items():
+        files |= table_files(table, name, articles[name], wrapped="ranking")
     return write_files(files | figure_files(violins(found.measured), "violins"), directory)
 
 
@@ -72,6 +93,6 @@ def _all_tables(found: Findings) -> dict[str, pd.DataFrame]:
 
 
 def records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return the lines of a table as JSON values; ``None`` where there is none."""
+    """Return the lines of a table as JSON values; missing values become ``None``."""
     lines = table.astype(object).to_dict(orient="records")
     return [{key: None if pd.isna(value) else value for key, value in line.items()} for line in lines]

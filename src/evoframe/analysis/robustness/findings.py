@@ -1,4 +1,4 @@
-"""What a measurement says of groups: each controller for itself, within controllers, and by body."""
+"""Comparisons of the groups of a measurement: across controllers, within controllers, and by body."""
 
 from __future__ import annotations
 
@@ -18,17 +18,16 @@ __all__ = ["Findings", "find"]
 
 @attrs.frozen(eq=False)
 class Findings:
-    """A measurement and its tests; those are ``None`` where there is nothing to compare.
+    """A measurement and its tests, which are ``None`` if nothing can be compared.
 
-    All of them rest on the controllers with which no body diverged. With each of these a group is worth the
+    All tests use the controllers with which no body diverged. With each of them, the score of a group is the
     median of its bodies' scores.
 
     Attributes:
         measured: The measurement.
-        apart: Groups compared as the paper does, each controller for itself: Kruskal-Wallis and Dunn.
-        within: Groups compared within controllers, which are the same for all: Friedman and Wilcoxon.
-        by_body: Groups compared with one value for each body, its median; there are such only where a group
-            has several bodies.
+        apart: Controllers as independent samples, as in the paper: Kruskal-Wallis and Dunn's test.
+        within: Groups compared within each controller: Friedman and Wilcoxon's tests.
+        by_body: Medians of bodies, one value per body; ``None`` unless a group has several bodies.
     """
 
     measured: Robustness
@@ -38,7 +37,7 @@ class Findings:
 
     @property
     def common(self) -> int:
-        """With how many controllers no body diverged."""
+        """Number of controllers with which no body diverged."""
         return len(self.measured.common)
 
 
@@ -47,7 +46,7 @@ def find(measured: Robustness, correction: Correction = "holm") -> Findings:
 
     Args:
         measured: The measurement.
-        correction: Of the p-values of pairs; ``none`` is what the paper does.
+        correction: Correction of pairwise p-values for multiple comparisons; the paper uses ``none``.
     """
     groups = measured.setting.groups
     if len(groups) < 2 or not len(measured.common):

@@ -1,4 +1,4 @@
-"""What a report shows of a measurement of robustness: that of its own directory, if it was made."""
+"""Section of a report on the measurement of robustness in its directory, if there is one."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from evoframe.robustness import SETTING_FILE, measurable, read_robustness
 
 __all__ = ["robustness_part"]
 
-_STALE = "The measurement that is there is of other champions"
-_CAPTION = "All bodies with the same random controllers (evoframe robustness)."
-_OTHERWISE = (
-    "They were simulated otherwise than in the runs they come from; robustness.json in the folder robustness "
-    "says how."
+_STALE = "The measurement in the folder robustness is of other champions; to measure again, run"
+_CAPTION = "Scores of all bodies with the same random controllers (evoframe robustness)."
+_DIFFERENT = (
+    "The simulation differs from that of the runs in which the bodies evolved; its settings are in "
+    "robustness/robustness.json."
 )
 
 
 def robustness_part(directory: Path, plugins: Plugins, correction: Correction = "holm") -> Part:
-    """Return what a report has of the measurement in a run's or a study's directory.
+    """Return the section and files that show the measurement in the directory of a run or study.
 
     Args:
-        directory: Of the run or study.
-        plugins: The plugins that configurations name.
-        correction: Of the p-values of pairs.
+        directory: Directory of the run or study.
+        plugins: Plugins that configurations name.
+        correction: Correction of pairwise p-values for multiple comparisons.
 
     Raises:
-        ConfigurationError: A champion that is there cannot be read with these plugins.
+        ConfigurationError: A champion in the directory cannot be read with these plugins.
         InputError: The measurement, or a champion, is damaged.
     """
     place = directory / "robustness"
@@ -43,10 +43,10 @@ def robustness_part(directory: Path, plugins: Plugins, correction: Correction = 
     champions = list(measurable(directory, plugins))
     if not {body.digest for body in measured.setting.bodies} >= {each.digest for each in champions}:
         again = f"evoframe robustness {shown_name(directory)} --force"
-        return Part([Section("Robustness", [Words(f"{_STALE}; to measure again: {again}")])])
+        return Part([Section("Robustness", [Words(f"{_STALE} {again}")])])
     files = figure_files(violins(measured), "violins")
     blocks: list[Block] = [Picture(_CAPTION, files["violins.svg"])]
     if any(each.simulation != measured.setting.simulation for each in champions):
-        blocks.append(Words(_OTHERWISE))
+        blocks.append(Words(_DIFFERENT))
     blocks += map(Words, filter(None, conclusions(find(measured, correction)).splitlines()))
     return Part([Section("Robustness", blocks)], files)

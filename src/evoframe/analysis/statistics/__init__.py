@@ -1,9 +1,9 @@
-"""Statistics of groups of values: tests, effect sizes, corrections, rankings, and conclusions in words.
+"""Statistics of groups of values: tests, effect sizes, corrections, rankings, and written conclusions.
 
-Groups are independent (:func:`compare`) or were measured under the same circumstances, one after the other
-(:func:`compare_blocks`). Nothing here knows of runs or studies.
+Groups are independent (:func:`compare`) or measured under the same conditions (:func:`compare_blocks`). This
+subpackage does not depend on runs or studies.
 
-The list of corrections is all that a command line needs; it loads no library of statistics.
+Importing the list of corrections, which the command line needs, loads no statistics library.
 """
 
 import lazy_loader

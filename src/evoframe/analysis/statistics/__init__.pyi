@@ -1,4 +1,4 @@
-# Where each name is defined; read by type checkers, and by lazy_loader in __init__.py.
+# The module of each name; read by type checkers, and by lazy_loader in __init__.py.
 
 from .blocks import (
     BlockComparison as BlockComparison,

@@ -1,7 +1,7 @@
-"""Groups that were measured under the same circumstances, one after the other: blocks.
+"""Comparison of groups that were measured under the same conditions (blocks).
 
-Bodies under the same sets of phase offsets are such groups: what a set is worth is the same for all bodies,
-and comparing within sets takes it out.
+Example: all bodies are simulated with the same controllers. Comparing bodies within each controller removes
+the differences between controllers.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
 from evoframe.analysis.statistics.corrections import Correction
+from evoframe.analysis.statistics.groups import FEWEST
 from evoframe.analysis.statistics.pairs import find_pair, in_notation
 
 __all__ = ["BlockComparison", "BlockPair", "compare_blocks"]
@@ -29,12 +30,12 @@ class BlockPair:
     """Two groups, compared within blocks.
 
     Attributes:
-        first: The name of one.
-        second: The name of the other.
-        p: Wilcoxon's p of the differences, corrected.
-        wins: The share of blocks in which the first is the greater, ties half.
-        direction: 1 if the ranks of the differences, which Wilcoxon tests, are for the first, -1 if for the
-            second, 0 if they are even.
+        first: Name of the first group.
+        second: Name of the second group.
+        p: Corrected p-value of Wilcoxon's signed-rank test of the differences.
+        wins: Share of blocks in which the first group is greater; ties count half.
+        direction: 1 if the ranks of the differences, which Wilcoxon tests, favor the first group, -1 if the
+            second, 0 if neither.
     """
 
     first: str
@@ -44,22 +45,23 @@ class BlockPair:
     direction: int
 
     def turned(self) -> BlockPair:
-        """Return the same of the second and the first."""
+        """Return the comparison with the two groups swapped."""
         return BlockPair(self.second, self.first, self.p, 1 - self.wins, -self.direction)
 
 
 @attrs.frozen
 class BlockComparison:
-    """What can be said of several groups of the same blocks.
+    """Comparison of several groups within blocks.
 
     Attributes:
-        names: From the greatest mean rank down.
-        mean_ranks: Name -> the mean of its ranks within blocks, 1 being the least.
-        blocks: How many there are.
-        correction: Of the p-values of pairs.
-        chi_squared: Friedman's statistic; ``None`` for two groups, which Wilcoxon compares.
-        p: Its p, or Wilcoxon's.
-        kendall_w: Its effect size: 1 if all blocks rank the groups alike, 0 if there is nothing in common.
+        names: Names of the groups, from the greatest mean rank to the smallest.
+        mean_ranks: Name -> mean of the ranks within blocks; 1 is the smallest value.
+        blocks: Number of blocks.
+        correction: Correction of the pairwise p-values for multiple comparisons.
+        chi_squared: Statistic of the Friedman test; ``None`` for two groups, which Wilcoxon's test compares.
+        p: p-value of the Friedman test, or of Wilcoxon's test for two groups.
+        kendall_w: Kendall's W, the effect size: 1 if all blocks rank the groups in the same order, 0 if their
+            ranks have nothing in common; ``None`` for two groups.
         pairs: All pairs, in the order of the names.
     """
 
@@ -72,39 +74,50 @@ class BlockComparison:
     kendall_w: float | None
     pairs: tuple[BlockPair, ...]
 
+    @property
+    def tested(self) -> bool:
+        """True if there are at least five blocks; with fewer, reports give no p-values."""
+        return self.blocks >= FEWEST
+
     def ranking(self, alpha: float = 0.05) -> str:
-        """Return the groups from the greatest mean rank down, in the paper's notation: ``NEAT > AFPO``.
+        """Return the groups by decreasing mean rank, in the paper's notation: ``NEAT > AFPO``.
+
+        With too few blocks for tests, commas replace the signs.
 
         Args:
-            alpha: Below which p two neighbours count as different.
+            alpha: Significance level.
         """
+        if not self.tested:
+            return ", ".join(self.names)
         return in_notation(self.names, self.pair, alpha)
 
     def pair(self, first: str, second: str) -> BlockPair:
-        """Return what is said of two groups.
+        """Return the comparison of two groups.
 
         Raises:
-            KeyError: One of them is none of the groups.
+            KeyError: One of the names is not a group.
         """
         return find_pair(self.pairs, first, second)
 
 
 def compare_blocks(values: Mapping[str, Sequence[float]], correction: Correction = "holm") -> BlockComparison:
-    """Compare groups whose values belong together, the first of each with the first of the others, and so on.
+    """Compare groups within blocks; the i-th values of all groups are one block.
 
     Args:
-        values: Name -> values, as many for each of at least two groups.
-        correction: Of the p-values of pairs.
+        values: Name -> values; at least two groups of the same number of values.
+        correction: Correction of the pairwise p-values for multiple comparisons.
 
     Raises:
-        ValueError: There are too few groups or values, not as many for each, or a value is not finite.
+        ValueError: There are too few groups or values, their numbers differ, or a value is not finite.
 
     Sources: Friedman 1937; Wilcoxon 1945, where zeros are ranked and then dropped (Pratt 1959), exact for at
     most 50 blocks without ties; Kendall and Smith 1939.
     """
     lengths = {len(given) for given in values.values()}
     if len(values) < 2 or len(lengths) != 1 or lengths == {0}:
-        raise ValueError(f"expected as many values for each of 2 or more groups, found {sorted(lengths)}")
+        raise ValueError(
+            f"expected 2 or more groups of equal length, found {len(values)} of {sorted(lengths)}"
+        )
     table = np.array(list(values.values()), dtype=np.float64).T
     if not np.isfinite(table).all():
         raise ValueError("expected finite numbers")

@@ -1,4 +1,4 @@
-"""How p-values of many pairs are corrected for their number."""
+"""Corrections of pairwise p-values for multiple comparisons."""
 
 from __future__ import annotations
 
@@ -9,4 +9,4 @@ __all__ = ["CORRECTIONS", "Correction"]
 Correction: TypeAlias = Literal["holm", "bonferroni", "fdr_bh", "none"]
 
 CORRECTIONS: tuple[Correction, ...] = ("holm", "bonferroni", "fdr_bh", "none")
-"""``none`` is what the paper does."""
+"""The names of all corrections; the paper uses ``none``."""

@@ -1,7 +1,7 @@
-"""Are groups of runs different, by how much, and how sure is that?
+"""Comparison of independent groups of values: tests, effect sizes and rankings.
 
-The test of the paper, Dunn's after Shapiro-Wilk (paper.md, "The experiments"), and beside it what belongs to
-it: Kruskal-Wallis before, a named correction for many comparisons, and effect sizes.
+The paper uses Shapiro-Wilk and Dunn's test (docs/experiment.md, "The experiments"). Added here are the
+Kruskal-Wallis test of all groups, a named correction for multiple comparisons, and effect sizes.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ __all__ = [
 Floats: TypeAlias = NDArray[np.float64]
 
 FEWEST = 5
-"""Values of a group, with fewer of which tests, bands and boxes say nothing."""
+"""Smallest group for which tests, bands and box plots are shown."""
 
-_JUDGED = 3  # values at least, that Shapiro-Wilk can judge
+_JUDGED = 3  # values that Shapiro-Wilk requires at least
 
 
 @attrs.frozen
@@ -45,14 +45,15 @@ class Group:
     """The values of one configuration.
 
     Attributes:
-        name: What it is called.
-        n: How many values.
-        mean: Their arithmetic mean.
-        sd: Their standard deviation, of a sample; ``None`` of one value.
-        median: Their median.
-        quartiles: The first and the third.
-        mean_rank: The mean of their ranks among the values of all groups, 1 being the least.
-        shapiro_p: Shapiro-Wilk's p: small where they are not normal; ``None`` where that cannot be judged.
+        name: Name of the group.
+        n: Number of values.
+        mean: Arithmetic mean.
+        sd: Sample standard deviation; ``None`` for a single value.
+        median: Median.
+        quartiles: First and third quartile.
+        mean_rank: Mean of the ranks among the values of all groups; 1 is the smallest value.
+        shapiro_p: p-value of Shapiro-Wilk, small for values that are not normally distributed; ``None`` for
+            fewer than three values or equal ones.
     """
 
     name: str
@@ -67,14 +68,16 @@ class Group:
 
 @attrs.frozen
 class Pairwise:
-    """Two groups.
+    """Comparison of two groups.
 
     Attributes:
-        first: The name of one.
-        second: The name of the other.
-        p: Dunn's p, corrected.
-        a12: Vargha and Delaney's A: the probability that a value of the first is the greater, ties half.
-        direction: 1 if the first has the greater mean rank, which is what Dunn tests, -1 if the second has.
+        first: Name of the first group.
+        second: Name of the second group.
+        p: Corrected p-value of Dunn's test.
+        a12: Vargha and Delaney's A: the probability that a value of the first group exceeds one of the
+            second; ties count half.
+        direction: 1 if the first group has the greater mean rank, which Dunn's test compares; -1 if the
+            second has.
     """
 
     first: str
@@ -84,24 +87,24 @@ class Pairwise:
     direction: int
 
     def turned(self) -> Pairwise:
-        """Return the same of the second and the first."""
+        """Return the comparison with the two groups swapped."""
         return Pairwise(self.second, self.first, self.p, 1 - self.a12, -self.direction)
 
 
 @attrs.frozen
 class Comparison:
-    """What can be said of several groups.
+    """Comparison of several groups.
 
     Attributes:
-        groups: From the greatest mean rank down.
-        correction: Of the p-values of pairs.
-        alpha: Below which p two groups count as different.
-        h: Kruskal and Wallis' statistic.
-        p: Its p.
-        epsilon_squared: Its effect size: the share of the variance of ranks that lies between groups.
+        groups: The groups, sorted from the greatest mean rank to the smallest.
+        correction: Correction of the pairwise p-values for multiple comparisons.
+        alpha: Significance level.
+        h: Statistic of the Kruskal-Wallis test.
+        p: p-value of the Kruskal-Wallis test.
+        epsilon_squared: Effect size: the share of the variance of ranks that lies between groups.
         pairs: All pairs, in the order of the groups.
-        letters: Name -> letters; groups that share one are not different. Without any where the alphabet,
-            of 52 letters, does not suffice.
+        letters: Name -> letters; groups that share a letter do not differ significantly. Empty strings if
+            groups are too small for tests, or 52 letters are too few.
     """
 
     groups: tuple[Group, ...]
@@ -114,18 +117,26 @@ class Comparison:
     letters: Mapping[str, str]
 
     @property
-    def ranking(self) -> str:
-        """The groups from the greatest mean rank down, in the paper's notation: ``WM > HM > AM = GM``.
+    def tested(self) -> bool:
+        """True if the smallest group has at least five values; with fewer, reports give no p-values."""
+        return min(group.n for group in self.groups) >= FEWEST
 
-        Between neighbours stands what is said of these two alone; :attr:`letters` has all pairs.
+    @property
+    def ranking(self) -> str:
+        """The groups by decreasing mean rank, in the paper's notation: ``WM > HM > AM = GM``.
+
+        Each sign compares only its two neighbors; :attr:`letters` cover all pairs. If groups are too small
+        for tests, commas replace the signs.
         """
+        if not self.tested:
+            return ", ".join(group.name for group in self.groups)
         return in_notation([group.name for group in self.groups], self.pair, self.alpha)
 
     def pair(self, first: str, second: str) -> Pairwise:
-        """Return what is said of two groups.
+        """Return the comparison of two groups.
 
         Raises:
-            KeyError: One of them is none of the groups.
+            KeyError: One of the names is not a group.
         """
         return find_pair(self.pairs, first, second)
 
@@ -136,9 +147,9 @@ def compare(
     """Compare groups of independent values.
 
     Args:
-        values: Name -> values, at least one for each of at least two groups.
-        correction: For many comparisons.
-        alpha: Below which p two groups count as different.
+        values: Name -> values; at least two groups of at least one value.
+        correction: Correction of the pairwise p-values for multiple comparisons.
+        alpha: Significance level.
 
     Raises:
         ValueError: There are too few groups or values, or a value is not finite.
@@ -157,6 +168,7 @@ def compare(
     ordered = {name: arrays[name] for name in ranks}
     h, p = _kruskal(list(ordered.values()))
     n = sum(len(array) for array in ordered.values())
+    tested = min(len(array) for array in ordered.values()) >= FEWEST
     dunn = _dunn(list(ordered.values()), correction)
     names = list(ordered)
     pairs = [
@@ -177,15 +189,15 @@ def compare(
         p=p,
         epsilon_squared=h / (n - 1),
         pairs=tuple(pairs),
-        letters=dict(zip(names, _letters(dunn, alpha), strict=True)),
+        letters=dict(zip(names, _letters(dunn, alpha) if tested else [""] * len(names), strict=True)),
     )
 
 
 def ranked(values: Mapping[str, Sequence[float]]) -> tuple[Group, ...]:
-    """Return how the values of each group lie, from the greatest mean rank down, those alike by their names.
+    """Return the descriptive statistics of each group by decreasing mean rank; ties are sorted by name.
 
     Args:
-        values: Name -> values, at least one for each group.
+        values: Name -> values, at least one per group.
     """
     arrays = {name: np.asarray(given, dtype=np.float64) for name, given in values.items()}
     ends = np.cumsum([len(array) for array in arrays.values()])
@@ -208,7 +220,7 @@ def ranked(values: Mapping[str, Sequence[float]]) -> tuple[Group, ...]:
 
 
 def a12(first: Sequence[float] | Floats, second: Sequence[float] | Floats) -> float:
-    """Return the probability that a value of the first group is the greater, ties half.
+    """Return the probability that a value of the first group exceeds one of the second; ties count half.
 
     Source: Vargha and Delaney 2000, equation 14.
     """
@@ -217,15 +229,15 @@ def a12(first: Sequence[float] | Floats, second: Sequence[float] | Floats) -> fl
 
 
 def detectable_a12(n: int, comparisons: int, alpha: float = 0.05, power: float = 0.8) -> float:
-    """Return the smallest A12 above one half that a rank test would find, in most cases, with so few values.
+    """Return the smallest A12 above 0.5 that a rank test detects with the given power.
 
     Args:
         n: Values in each of two groups.
-        comparisons: For how many of them *alpha* must do (Bonferroni).
-        alpha: The error that is accepted.
-        power: In what share of the cases it would be found.
+        comparisons: Number of comparisons that share *alpha* (Bonferroni).
+        alpha: Significance level of all comparisons together.
+        power: Probability to detect the effect.
 
-    Source: Noether 1987, equation 3, for two groups of one size.
+    Source: Noether 1987, equation 3, for two groups of the same size.
     """
     quantiles = stats.norm.isf(alpha / comparisons / 2) + stats.norm.isf(1 - power)
     return min(1.0, 0.5 + float(quantiles) / math.sqrt(6 * n))
@@ -235,7 +247,7 @@ def _shapiro(array: Floats) -> float | None:
     if len(array) < _JUDGED or np.ptp(array) == 0:
         return None
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that p of many values is not exact
+        warnings.simplefilter("ignore")  # the p-value of many values is not exact
         return float(stats.shapiro(array).pvalue)
 
 
@@ -257,11 +269,11 @@ def _dunn(arrays: Sequence[Floats], correction: Correction) -> Floats:
 
 
 def _letters(p: Floats, alpha: float) -> list[str]:
-    """Return the letters of each group: groups that share one are not different."""
+    """Return the letters of each group; groups that share a letter do not differ significantly."""
     try:
         letters = posthocs.compact_letter_display(p, alpha)
     except ValueError as error:
         if "letter" not in str(error):
             raise
-        return [""] * len(p)  # it needs more letters than there are
+        return [""] * len(p)  # more letters are required than exist
     return [str(letter).replace(" ", "") for letter in letters]

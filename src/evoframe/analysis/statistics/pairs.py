@@ -1,4 +1,4 @@
-"""What tests say of pairs of groups: how one is found, and how a ranking is written."""
+"""Pairs of compared groups: look-up, orientation, and rankings in the paper's notation."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ __all__ = ["Pair", "find_pair", "in_notation", "oriented"]
 
 
 class Pair(Protocol):
-    """What is said of two groups."""
+    """Comparison of two groups."""
 
     @property
     def first(self) -> str:
-        """The name of one."""
+        """Name of the first group."""
 
     @property
     def second(self) -> str:
-        """The name of the other."""
+        """Name of the second group."""
 
     @property
     def p(self) -> float:
-        """Of their test."""
+        """The p-value."""
 
     @property
     def direction(self) -> int:
-        """1 if the first is the greater by what is tested, -1 if the second is, 0 if neither."""
+        """1 if the first group is the greater one in the test, -1 if the second is, 0 if neither."""
 
     def turned(self) -> Self:
-        """Return the same of the second and the first."""
+        """Return the comparison with the two groups swapped."""
 
 
 P = TypeVar("P", bound=Pair)
 
 
 def find_pair(pairs: Iterable[P], first: str, second: str) -> P:
-    """Return what is said of two groups, whichever is the first there.
+    """Return the comparison of *first* and *second*, swapped if *pairs* has it in the other order.
 
     Raises:
-        KeyError: They are no pair.
+        KeyError: *pairs* does not have the two groups.
     """
     for pair in pairs:
         if (pair.first, pair.second) == (first, second):
@@ -50,15 +50,15 @@ def find_pair(pairs: Iterable[P], first: str, second: str) -> P:
 
 
 def in_notation(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: float) -> str:
-    """Return a ranking as the paper writes it: between neighbours stands what their test says.
+    """Return a ranking in the paper's notation; each sign compares only its two neighbors.
 
-    That is ``=`` if they are not found to differ, and ``>`` if they are. Where the order is by one measure
-    and the test by another, a ``<`` says that they contradict each other.
+    ``>`` means a significant difference, ``=`` none. If the groups are sorted by a different measure than the
+    test uses, ``<`` marks a significant difference in the opposite direction.
 
     Args:
-        names: From the greatest down.
-        pair: Gives the test of two of them.
-        alpha: Below which p two neighbours count as different.
+        names: Names from the greatest group to the smallest.
+        pair: Returns the comparison of two groups.
+        alpha: Significance level.
     """
     parts = [names[0]]
     for one, other in itertools.pairwise(names):
@@ -69,5 +69,5 @@ def in_notation(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: f
 
 
 def oriented(pair: P) -> P:
-    """Return a pair with the greater one first, by what is tested."""
+    """Return a pair with the greater group first, as measured by the test."""
     return pair.turned() if pair.direction < 0 else pair

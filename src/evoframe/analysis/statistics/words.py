@@ -1,4 +1,4 @@
-"""Conclusions of a comparison in words: also what cannot be concluded."""
+"""Written conclusions of a comparison, with their limits."""
 
 from __future__ import annotations
 
@@ -8,21 +8,20 @@ from evoframe.analysis.statistics.pairs import oriented
 
 __all__ = ["conclusion"]
 
-_FEW = 10  # values; below that a rank test of several groups finds next to nothing
-_MOST = 15  # pairs that a reader follows
+_FEW = 10  # values per group; with fewer, rank tests of several groups have little power
+_MOST = 15  # pairs listed in a sentence
 
 
 def conclusion(comparison: Comparison, measure: str, values: tuple[str, str] = ("run", "runs")) -> str:
-    """Return a paragraph on what can and what cannot be concluded.
+    """Return a paragraph of conclusions, without p-values if the smallest group has fewer than five values.
 
     Args:
-        comparison: Of the groups.
-        measure: What was compared, as ``the score of the best pair``.
-        values: What each value of a group is of: one of them, several of them.
+        comparison: The comparison.
+        measure: The compared measure, as in ``the best score``.
+        values: Noun for a value of a group, singular and plural.
     """
-    enough = [group.n for group in comparison.groups if group.n >= FEWEST]
+    smallest = min(group.n for group in comparison.groups)
     tests = 1 if comparison.correction == "none" else len(comparison.pairs)
-    sensitive = min(enough, default=0) >= _FEW
     return written(
         "comparison.txt",
         comparison=comparison,
@@ -31,8 +30,6 @@ def conclusion(comparison: Comparison, measure: str, values: tuple[str, str] = (
         several=values[1],
         different=[oriented(pair) for pair in comparison.pairs if pair.p < comparison.alpha],
         most=_MOST,
-        few=[group.name for group in comparison.groups if group.n < FEWEST],
         fewest=FEWEST,
-        enough=enough,
-        detectable=detectable_a12(min(enough), tests, comparison.alpha) if sensitive else None,
+        detectable=detectable_a12(smallest, tests, comparison.alpha) if smallest >= _FEW else None,
     )
