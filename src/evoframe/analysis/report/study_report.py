@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import attrs
 
 from evoframe.analysis.data.champions import load_champion
+from evoframe.analysis.data.effects import effects_article, effects_table, factorials
 from evoframe.analysis.data.studies import StudyData
 from evoframe.analysis.data.tables import (
     Compared,
@@ -47,6 +48,10 @@ _RANKINGS = (
     "is a significant difference, = is none. Letters and pairs, below, compare all groups."
 )
 _SUMMARY = "Statistics of each group; groups that share a letter do not differ significantly."
+_EFFECTS = (
+    "Main effects and interaction of the two settings of the grid, by the aligned rank transform (Wobbrock "
+    "et al., CHI 2011): analyses of variance of ranks, which do not assume normally distributed values."
+)
 _PAIRS = (
     "All pairs of groups: p-value of Dunn's test, and A12, the probability that a run of the first group "
     "exceeds one of the second."
@@ -75,15 +80,21 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
     found = comparisons(data, correction)
     shown = [_Shown(each, data.unit) for each in found]
     lead = written("lead.txt", data=data)
-    words = f"{written('study.txt', data=data, found=shown)}\n"
+    factorial = factorials(data)
+    effects = [(each.measure, written("effects.txt", factorial=each)) for each in factorial]
+    words = f"{written('study.txt', data=data, found=shown, effects=effects)}\n"
     summary, pairs, ranking = summary_table(found, data.unit), pairs_table(found), ranking_table(found)
     champion, best_run = _best_run(data, plugins)
     by_title: dict[str, list[Block]] = {}
     for each in shown:
         by_title.setdefault(each.compared.view.title, []).extend(each.blocks())
     tables: list[Block] = [Table(_SUMMARY, summary), Table(_PAIRS, pairs)]
-    configuration: list[Block] = [Source(STUDY_FILE, data.settings)] if data.settings else []
+    both: list[Block] = [Words(f"{measure.capitalize()}: {text}") for measure, text in effects]
     files: dict[str, bytes] = {}
+    if factorial:
+        both.append(Table(_EFFECTS, effects_table(factorial)))
+        files |= table_files(effects_table(factorial), "effects", effects_article(factorial), _HEADING)
+    configuration: list[Block] = [Source(STUDY_FILE, data.settings)] if data.settings else []
     for each, slug in zip(shown, slugs(each.name for each in shown), strict=True):
         files |= each.figures(slug)
     return Draft(
@@ -91,6 +102,7 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
         lead,
         sections=[
             Section("Rankings", [Table(_RANKINGS, ranking)]),
+            *([Section("Effects of both settings", both)] if both else []),
             *champion.sections,
             *(Section(title, blocks) for title, blocks in by_title.items()),
             *robustness.sections,
