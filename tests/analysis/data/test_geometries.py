@@ -13,7 +13,7 @@ import toys
 
 from evoframe import Design, Geometry, GeometryPart, run
 from evoframe.analysis.data.champions import load_champion
-from evoframe.analysis.data.geometries import checked
+from evoframe.analysis.data.geometries import validate_geometry
 from evoframe.errors import ComponentError
 
 VERTICES = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]] * 2, np.float64)
@@ -26,7 +26,7 @@ def with_part(**changes: Any) -> Geometry:
 
 
 def test_a_valid_geometry_is_returned() -> None:
-    assert checked(GOOD) is GOOD
+    assert validate_geometry(GOOD) is GOOD
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_a_valid_geometry_is_returned() -> None:
 )
 def test_an_invalid_geometry_is_named(given: Any, problem: str) -> None:
     with pytest.raises((TypeError, ValueError), match=problem):
-        checked(given)
+        validate_geometry(given)
 
 
 def test_the_error_names_the_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

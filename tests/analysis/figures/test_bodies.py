@@ -49,7 +49,7 @@ def test_parts_title_and_size_are_named(geometry: Geometry) -> None:
     assert [text.get_text() for text in legend.get_texts()] == ["contractile", "enclosure"]
     shown = [text.get_text() for text in figure.texts]
     assert shown[0] == "a body"
-    assert shown[1].replace("\u2009", "") == "0.25\u00d70.2\u00d70.2 m"
+    assert shown[1].replace("\u2009", "") == "250\u00d7200\u00d7200 mm"
 
 
 def extent_of(figure: Any, points: Any) -> Bbox:

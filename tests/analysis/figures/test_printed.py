@@ -5,20 +5,20 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, strategies as st
 
-from evoframe.analysis.figures.printed import broken, text_width
+from evoframe.analysis.figures.printed import break_lines, text_width
 
 ASCII = st.text(st.characters(min_codepoint=32, max_codepoint=126))
 
 
 @given(ASCII)
 def test_no_line_is_too_wide(name: str) -> None:
-    assert text_width(broken(name, 1.0, 7), 7) <= 1.0
+    assert text_width(break_lines(name, 1.0, 7), 7) <= 1.0
 
 
 @given(ASCII.filter(lambda name: len(name) < 30))
 def test_nothing_is_lost(name: str) -> None:
-    assert broken(name, 1.0, 7).split() == broken(broken(name, 1.0, 7), 1.0, 7).split()
-    assert "".join(broken(name, 1.0, 7).split()) == "".join(name.split())
+    assert break_lines(name, 1.0, 7).split() == break_lines(break_lines(name, 1.0, 7), 1.0, 7).split()
+    assert "".join(break_lines(name, 1.0, 7).split()) == "".join(name.split())
 
 
 @pytest.mark.parametrize(
@@ -33,4 +33,4 @@ def test_nothing_is_lost(name: str) -> None:
     ],
 )
 def test_lines_break_between_words(name: str, lines: list[str]) -> None:
-    assert broken(name, 1.0, 7).split("\n") == lines
+    assert break_lines(name, 1.0, 7).split("\n") == lines

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from evoframe.analysis.statistics.blocks import BlockPair
-from evoframe.analysis.statistics.pairs import find_pair, in_notation, oriented
+from evoframe.analysis.statistics.pairs import find_pair, format_ranking, orient
 
 pairs = st.builds(
     BlockPair,
@@ -29,7 +29,7 @@ def test_swapping_twice_returns_the_same_pair(pair: BlockPair) -> None:
 
 @given(pairs)
 def test_the_greater_group_comes_first(pair: BlockPair) -> None:
-    found = oriented(pair)
+    found = orient(pair)
     assert found.direction == abs(pair.direction)
     assert found in {pair, pair.turned()}
 
@@ -42,12 +42,12 @@ def test_an_unknown_pair_is_an_error() -> None:
 @given(st.lists(st.tuples(st.floats(0, 1), st.sampled_from([-1, 1])), min_size=1, max_size=6))
 def test_a_sign_compares_its_two_neighbors(tests: list[tuple[float, int]]) -> None:
     names = [f"G{number}" for number in range(len(tests) + 1)]
-    neighbours = dict(zip(pairwise(names), tests, strict=True))
+    neighbors = dict(zip(pairwise(names), tests, strict=True))
     found = []
     for one, other in combinations(names, 2):
-        p, direction = neighbours.get((one, other), (0.0, 1))
+        p, direction = neighbors.get((one, other), (0.0, 1))
         found.append(BlockPair(one, other, p, 0.5, direction))
-    ranking = in_notation(names, lambda one, other: find_pair(found, one, other), 0.05)
+    ranking = format_ranking(names, lambda one, other: find_pair(found, one, other), 0.05)
     signs = ["=" if p >= 0.05 else ">" if direction > 0 else "<" for p, direction in tests]
     assert ranking.split()[::2] == names
     assert ranking.split()[1::2] == signs

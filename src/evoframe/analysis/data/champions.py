@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import attrs
 
-from evoframe.analysis.data.geometries import checked
+from evoframe.analysis.data.geometries import validate_geometry
 from evoframe.contract import (
     Geometry,
     NetworkGraph,
@@ -80,7 +80,9 @@ def load_champion(run: Run, plugins: Plugins) -> ChampionData:
     simulator, objective = config.simulator.component, config.objective.component
     with naming(run.directory), blaming("simulator"):
         geometry = (
-            checked(simulator.geometry(design, _FRAMES)) if isinstance(simulator, SupportsGeometry) else None
+            validate_geometry(simulator.geometry(design, _FRAMES))
+            if isinstance(simulator, SupportsGeometry)
+            else None
         )
     drawn = geometry.tracks if geometry else {}
     return ChampionData(

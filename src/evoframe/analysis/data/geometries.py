@@ -9,12 +9,12 @@ from matplotlib.colors import is_color_like
 
 from evoframe.contract import Geometry, GeometryPart
 
-__all__ = ["checked"]
+__all__ = ["validate_geometry"]
 
 _LARGEST = 1e30  # m; squares of larger numbers do not fit into 32-bit floats
 
 
-def checked(given: Any) -> Geometry:
+def validate_geometry(given: Any) -> Geometry:
     """Return the geometry that a simulator returned, after validating it.
 
     Raises:

@@ -69,7 +69,7 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
         handlelength=1.0,
     )
     _write(figure, 0.04, title, size=9)
-    _write(figure, 0.22, "\u2009\u00d7\u2009".join(f"{x:.3g}" for x in extent) + " m", size=7)
+    _write(figure, 0.22, "\u2009\u00d7\u2009".join(f"{1000 * x:.3g}" for x in extent) + " mm", size=7)
     return figure
 
 

@@ -153,8 +153,8 @@ class _Drawing:
                     path=self._return(link, route) if returns else self._path(link, route),
                     arrowstyle="-|>" if returns else "-",
                     mutation_scale=6,
-                    facecolor=_colour(link.weight) if returns else "none",
-                    edgecolor=_colour(link.weight),
+                    facecolor=_color(link.weight) if returns else "none",
+                    edgecolor=_color(link.weight),
                     linestyle=DASHES if link.weight < 0 else "-",
                     lw=_width(link.weight, largest),
                     zorder=1,
@@ -213,7 +213,7 @@ class _Drawing:
         )
 
 
-def _colour(weight: float) -> str:
+def _color(weight: float) -> str:
     return NEGATIVE if weight < 0 else POSITIVE
 
 

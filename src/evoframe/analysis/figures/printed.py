@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
-__all__ = ["BOTH_COLUMNS", "COLOURS", "COLUMN", "DASHES", "broken", "row_height", "text_width"]
+__all__ = ["BOTH_COLUMNS", "COLOURS", "COLUMN", "DASHES", "break_lines", "row_height", "text_width"]
 
 COLUMN, BOTH_COLUMNS = 3.5, 7.0
 """Width of one column of an article, and of its two columns, in inches."""
@@ -25,7 +25,7 @@ _LINES = 6  # greatest number of lines of a name
 _LINE = 0.13  # height of a line of a label, in inches
 
 
-def broken(name: str, width: float, size: float) -> str:
+def break_lines(name: str, width: float, size: float) -> str:
     """Return a name with line breaks after blanks, slashes and underscores, but not within ``n = 2``.
 
     If there are more than six lines, those in the middle are omitted, because names usually differ at their

@@ -18,7 +18,7 @@ from evoframe.analysis.data.studies import View, Yardstick
 from evoframe.analysis.data.units import NAMES, axis_title, factor_of
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.plain import plain
-from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, broken, row_height, text_width
+from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, break_lines, row_height, text_width
 from evoframe.analysis.output.texts import counted
 from evoframe.analysis.statistics.groups import FEWEST, Comparison
 
@@ -69,9 +69,9 @@ def draw_lines(drawn: Sequence[Line], label: str, title: str, legend: str | None
     """
     if not drawn:
         raise ValueError("no lines to draw, expected at least one")
-    names = [broken(line.name, _INSIDE - _HANDLE, _SIZE) for line in drawn]
+    names = [break_lines(line.name, _INSIDE - _HANDLE, _SIZE) for line in drawn]
     n_columns, n_lines = _legend_shape(names)
-    below = broken(legend or "", _INSIDE, _SIZE)
+    below = break_lines(legend or "", _INSIDE, _SIZE)
     figure, axes = _figure(title, 2.6 + _LINE * (n_lines + below.count("\n") + 1))
     for line, name in zip(drawn, names, strict=True):
         style: dict[str, Any] = {
@@ -122,7 +122,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     """
     groups = view.values(yardstick)
     labels = [
-        f"{broken(name, _NAME, _SIZE)}\n{counted(len(values), 'run', 'runs')}"
+        f"{break_lines(name, _NAME, _SIZE)}\n{counted(len(values), 'run', 'runs')}"
         for name, values in groups.items()
     ]
     height = max(0.8, len(groups) * row_height(labels, _ROW))
@@ -158,7 +158,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     axes.locator_params(axis="x", nbins=6)  # more labels would nearly touch if names are long
     axes.set_yticks(range(len(groups)), labels)
     axes.set_ylim(len(groups) - 0.5, -0.5)  # the first group at the top
-    axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=broken(view.key, height, 8))
+    axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=break_lines(view.key, height, 8))
     return figure
 
 
@@ -169,7 +169,9 @@ def ranks(comparison: Comparison, title: str) -> Figure:
     Source: critical difference diagrams of Demsar 2006, here with the p-values of the comparison.
     """
     names = [group.name for group in comparison.groups]
-    labels = [broken(f"{group.name}: {group.mean_rank:.3g}", _RANKED, _SIZE) for group in comparison.groups]
+    labels = [
+        break_lines(f"{group.name}: {group.mean_rank:.3g}", _RANKED, _SIZE) for group in comparison.groups
+    ]
     figure, axes = _figure(title, 0.66)
     numbers = range(len(names))  # with names, the figure would depend on their hashes
     p = pd.DataFrame(
@@ -219,7 +221,7 @@ def _spaced(axes: Axes, drawn: Mapping[str, Any], row: float) -> float:
 
 def _figure(title: str, height: float) -> tuple[Figure, Axes]:
     """Return a figure as wide as a column, taller if its title has several lines."""
-    above = broken(title, _INSIDE, _TITLE)
+    above = break_lines(title, _INSIDE, _TITLE)
     figure = Figure(figsize=(COLUMN, height + 0.17 * above.count("\n")), layout="constrained")
     figure.suptitle(above, size=_TITLE)
     axes = figure.add_subplot()

@@ -158,7 +158,7 @@ class _Shown:
         return f"{view.title}, {NAMES[self.compared.yardstick]} by {view.key}"
 
     @functools.cached_property
-    def said(self) -> list[str]:
+    def paragraphs(self) -> list[str]:
         """The ranking and a paragraph of conclusions; one sentence if nothing can be compared."""
         if self.compared.comparison is None:
             return [written("alone.txt", groups=self.compared.groups, fewest=FEWEST)]
@@ -179,7 +179,7 @@ class _Shown:
     def blocks(self) -> list[Block]:
         """Return the blocks of the page."""
         view, name = self.compared.view, NAMES[self.compared.yardstick]
-        first, *more = self.said
+        first, *more = self.paragraphs
         blocks: list[Block] = [Words(f"{name.capitalize()} by {view.key}: {first}"), *map(Words, more)]
         if self.lines:
             bands = ", with 95 % bootstrap bands" if all(line.band for line in self.lines) else ""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from evoframe.analysis.data.units import axis_title, factor_of
 from evoframe.analysis.figures.plain import plain
-from evoframe.analysis.figures.printed import COLOURS, COLUMN, broken, row_height
+from evoframe.analysis.figures.printed import COLOURS, COLUMN, break_lines, row_height
 from evoframe.robustness import Robustness
 
 __all__ = ["violins"]
@@ -86,7 +86,7 @@ def _labels(measured: Robustness) -> list[str]:
         more = [f"{len(columns)} bodies"] if len(columns) > 1 else []
         lost = measured.lost(columns)
         more += [f"{lost} of {len(columns) * measured.setting.controllers} diverged"] if lost else []
-        labels.append("\n".join([broken(name, _NAME, _SIZE), *more]))
+        labels.append("\n".join([break_lines(name, _NAME, _SIZE), *more]))
     return labels
 
 

@@ -7,7 +7,7 @@ from evoframe.analysis.output.texts import written
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics.blocks import BlockPair
 from evoframe.analysis.statistics.groups import FEWEST, Comparison
-from evoframe.analysis.statistics.pairs import oriented
+from evoframe.analysis.statistics.pairs import orient
 from evoframe.analysis.statistics.words import conclusion
 
 __all__ = ["conclusions"]
@@ -44,7 +44,7 @@ def conclusions(found: Findings) -> str:
         crooked=[group.name for group in groups_apart if (p := group.shapiro_p) is not None and p < _ALPHA],
         conclusion_apart=conclusion(apart, "the score", _CONTROLLERS) if apart else "",
         within=within,
-        different=[*map(oriented, different)],
+        different=[*map(orient, different)],
         closest=closest,
         gap=with_unit(gap, unit, digits=3),
         by_body=by_body,

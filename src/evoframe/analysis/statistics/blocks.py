@@ -18,7 +18,7 @@ from statsmodels.stats.multitest import multipletests
 
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.groups import FEWEST
-from evoframe.analysis.statistics.pairs import find_pair, in_notation
+from evoframe.analysis.statistics.pairs import find_pair, format_ranking
 
 __all__ = ["BlockComparison", "BlockPair", "compare_blocks"]
 
@@ -89,7 +89,7 @@ class BlockComparison:
         """
         if not self.tested:
             return ", ".join(self.names)
-        return in_notation(self.names, self.pair, alpha)
+        return format_ranking(self.names, self.pair, alpha)
 
     def pair(self, first: str, second: str) -> BlockPair:
         """Return the comparison of two groups.

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from evoframe.analysis.statistics.corrections import Correction
-from evoframe.analysis.statistics.pairs import find_pair, in_notation
+from evoframe.analysis.statistics.pairs import find_pair, format_ranking
 
 __all__ = [
     "FEWEST",
@@ -130,7 +130,7 @@ class Comparison:
         """
         if not self.tested:
             return ", ".join(group.name for group in self.groups)
-        return in_notation([group.name for group in self.groups], self.pair, self.alpha)
+        return format_ranking([group.name for group in self.groups], self.pair, self.alpha)
 
     def pair(self, first: str, second: str) -> Pairwise:
         """Return the comparison of two groups.

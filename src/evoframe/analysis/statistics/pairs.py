@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol, Self, TypeVar
 
-__all__ = ["Pair", "find_pair", "in_notation", "oriented"]
+__all__ = ["Pair", "find_pair", "format_ranking", "orient"]
 
 
 class Pair(Protocol):
@@ -49,7 +49,7 @@ def find_pair(pairs: Iterable[P], first: str, second: str) -> P:
     raise KeyError(f"{first}, {second}")
 
 
-def in_notation(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: float) -> str:
+def format_ranking(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: float) -> str:
     """Return a ranking in the paper's notation; each sign compares only its two neighbors.
 
     ``>`` means a significant difference, ``=`` none. If the groups are sorted by a different measure than the
@@ -68,6 +68,6 @@ def in_notation(names: Sequence[str], pair: Callable[[str, str], Pair], alpha: f
     return " ".join(parts)
 
 
-def oriented(pair: P) -> P:
+def orient(pair: P) -> P:
     """Return a pair with the greater group first, as measured by the test."""
     return pair.turned() if pair.direction < 0 else pair

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from evoframe.analysis.output.texts import written
 from evoframe.analysis.statistics.groups import FEWEST, Comparison, detectable_a12
-from evoframe.analysis.statistics.pairs import oriented
+from evoframe.analysis.statistics.pairs import orient
 
 __all__ = ["conclusion"]
 
@@ -28,7 +28,7 @@ def conclusion(comparison: Comparison, measure: str, values: tuple[str, str] = (
         measure=measure,
         one=values[0],
         several=values[1],
-        different=[oriented(pair) for pair in comparison.pairs if pair.p < comparison.alpha],
+        different=[orient(pair) for pair in comparison.pairs if pair.p < comparison.alpha],
         most=_MOST,
         fewest=FEWEST,
         detectable=detectable_a12(smallest, tests, comparison.alpha) if smallest >= _FEW else None,
