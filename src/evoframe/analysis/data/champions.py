@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import attrs
 
 from evoframe.analysis.data.geometries import checked
+from evoframe.analysis.data.samples import Sample, samples_of
 from evoframe.contract import (
     Geometry,
     NetworkGraph,
@@ -56,6 +57,7 @@ class ChampionData:
         track: The point that its objective looks at; ``None`` if it is none that is drawn.
         networks: Of the populations whose evolvers say what their networks look like.
         verification: What is left of its score with one thing changed; ``None`` if nobody has looked.
+        samples: Samples of the track that the objective compares, if it selects some.
     """
 
     score: float
@@ -64,6 +66,7 @@ class ChampionData:
     track: str | None
     networks: tuple[DrawnNetwork, ...]
     verification: Verification | None
+    samples: tuple[Sample, ...] = ()
 
 
 def load_champion(run: Run, plugins: Plugins) -> ChampionData:
@@ -81,14 +84,17 @@ def load_champion(run: Run, plugins: Plugins) -> ChampionData:
         geometry = (
             checked(simulator.geometry(design, _FRAMES)) if isinstance(simulator, SupportsGeometry) else None
         )
-    drawn = geometry.tracks if geometry else {}
+        drawn = geometry.tracks if geometry else {}
+        track = next((track for track in objective.record.tracks if track in drawn), None)
+        samples = () if track is None else samples_of(simulator, objective, design, track)
     return ChampionData(
         score=run.champion().score,
         unit=unit_of(objective),
         geometry=geometry,
-        track=next((track for track in objective.record.tracks if track in drawn), None),
+        track=track,
         networks=tuple(_networks(run, config)),
         verification=run.verification(),
+        samples=samples,
     )
 
 

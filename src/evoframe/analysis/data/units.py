@@ -6,9 +6,17 @@ from collections.abc import Mapping
 
 from evoframe.analysis.data.studies import Yardstick
 
-__all__ = ["NAMES", "axis_title", "factor_of", "with_unit"]
+__all__ = ["CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "factor_of", "with_unit"]
 
 NAMES: Mapping[Yardstick, str] = {"score": "best pair simulated", "fitness": "best fitness"}
+
+CURVE_NAMES: Mapping[Yardstick, str] = {"score": "best pair so far", "fitness": "best fitness"}
+"""Titles of axes of values over generations; the score of the best pair never decreases."""
+
+CURVE_CAPTIONS: Mapping[Yardstick, str] = {
+    "score": "The score of the best pair simulated so far, after each generation",
+    "fitness": "The best fitness in each generation",
+}
 
 
 def factor_of(unit: str) -> float:

@@ -26,7 +26,7 @@ def champion_part(data: ChampionData, whose: str) -> Part:
         blocks.append(Words("Its simulator does not say what its designs look like."))
     else:
         caption = "The champion as it is simulated, with displacements exaggerated. Drag to turn it."
-        blocks.append(Motion(caption, data.geometry, data.track))
+        blocks.append(Motion(caption, data.geometry, data.track, data.samples))
         files |= figure_files(body(data.geometry, score), "champion-body")
     if data.verification is not None:
         table = verification_table(data.verification)

@@ -21,6 +21,7 @@ class Draft:
         sections: Of the page.
         files: Name -> bytes, beside the page.
         words: What the command prints.
+        facts: Settings listed at the top of the page: label -> value.
     """
 
     title: str
@@ -28,7 +29,8 @@ class Draft:
     sections: Sequence[Section]
     files: Mapping[str, bytes] = attrs.field(repr=False)
     words: str
+    facts: Mapping[str, str] = attrs.field(factory=dict)
 
     def all_files(self) -> dict[str, bytes]:
         """Return all files of the report, the page among them: name -> bytes."""
-        return {**self.files, "report.html": page(self.title, self.lead, self.sections)}
+        return {**self.files, "report.html": page(self.title, self.lead, self.sections, self.facts)}

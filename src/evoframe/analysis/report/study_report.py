@@ -17,7 +17,7 @@ from evoframe.analysis.data.tables import (
     summary_table,
     versions_table,
 )
-from evoframe.analysis.data.units import NAMES, axis_title
+from evoframe.analysis.data.units import CURVE_CAPTIONS, CURVE_NAMES, NAMES, axis_title
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.studies import curves_of, finals, ranks
 from evoframe.analysis.output.names import slugs
@@ -96,6 +96,7 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
             "conclusions.txt": words.encode(),
         },
         words=words,
+        facts=data.facts,
     )
 
 
@@ -160,7 +161,8 @@ class _Shown:
         blocks: list[Block] = [Words(f"The {name} by {view.key}: {first}"), *map(Words, more)]
         if self.lines:
             bands = ", with 95 % bands (bootstrap)" if all(line.band for line in self.lines) else ""
-            plot = lines_chart(self.lines, axis_title(name, self.unit))
-            blocks.append(Chart(f"The {name} in each generation: mean over runs{bands}.", plot))
+            yardstick = self.compared.yardstick
+            plot = lines_chart(self.lines, axis_title(CURVE_NAMES[yardstick], self.unit))
+            blocks.append(Chart(f"{CURVE_CAPTIONS[yardstick]}: mean over runs{bands}.", plot))
         plot = finals_chart(view, self.compared.yardstick, self.unit)
         return [*blocks, Chart(f"The {name} of every run in the end.", plot)]
