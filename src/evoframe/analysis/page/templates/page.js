@@ -9,7 +9,7 @@
   const MM = 1000; // the data are in meters, the page is in millimeters
   // The toolbar of plotly covers data unless the chart is wide, and on a touch screen it never goes away.
   const hasToolbar = matchMedia("(hover: hover) and (min-width: 40rem)");
-  const TOOLBAR = 34; // px: its height, which is kept free above the data
+  const TOOLBAR = 38; // px: its height, which is kept free above the data
 
   let printing = false;
 
@@ -216,7 +216,7 @@
     };
     const layout = () => {
       const aspect = printing ? PAPER.body / PAPER.width : body.clientHeight / body.clientWidth;
-      const away = Math.max(1, 2.2 * aspect); // a narrow view needs distance
+      const away = Math.max(1, 2.5 * aspect); // a narrow view needs distance
       const eye = { x: 0.75 * away, y: -1.3 * away, z: 0.55 * away };
       const scene = { aspectmode: "data", uirevision: "kept", camera: { eye, center: { x: 0, y: 0, z: -0.1 } } };
       ranges().forEach((range, axis) => { scene[`${"xyz"[axis]}axis`] = { range, title: { text: `${"xyz"[axis]} (mm)` }, nticks: 5 }; });
