@@ -210,8 +210,10 @@ def test_a_phone_has_no_toolbar(run_page: Path, opened: Callable[..., Any]) -> N
 def test_the_toolbar_does_not_cover_data(run_page: Path, opened: Callable[..., Any]) -> None:
     shown = opened(run_page)
     shown.scroll_through()
+    for name in ("div.chart", "div.trace"):
+        expect(shown.page.locator(f"{name} .modebar-group").first).to_be_attached()
     boxes = shown.page.evaluate(
-        """Array.from(document.querySelectorAll(".chart, .trace")).map((chart) => [
+        """Array.from(document.querySelectorAll("div.chart, div.trace")).map((chart) => [
             chart.querySelector(".modebar-group").getBoundingClientRect().bottom,
             chart.querySelector(".nsewdrag").getBoundingClientRect().top,
         ])"""
@@ -291,7 +293,7 @@ def test_prints_all_charts_and_the_body_in_light_colors(
         """addEventListener("beforeprint", () => {
             const still = document.querySelector(".still"), context = still.getContext("2d");
             window.printed = {
-                blank: Array.from(document.querySelectorAll(".chart, .trace"))
+                blank: Array.from(document.querySelectorAll("div.chart, div.trace"))
                     .filter((one) => !one.querySelector(".js-line, .box, .point")).length,
                 text: getComputedStyle(document.querySelector(".trace .xtitle")).fill,
                 shades: new Set(context.getImageData(0, 0, still.width, still.height).data).size,
