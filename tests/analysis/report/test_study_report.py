@@ -60,7 +60,7 @@ def test_what_has_no_curves_is_not_drawn_over_generations(plugins: Plugins) -> N
     having = draft_of_study(study("am", "wm", curve=(1.0, 2.0)), plugins)
     assert {f"curves-{yardstick}-s.svg" for yardstick in ("score", "fitness")} < {*having.files}
     captions = [b.caption for s in having.sections for b in s.blocks if isinstance(b, Chart)]
-    assert "The best fitness in each generation: mean over runs, with 95 % bands (bootstrap)." in captions
+    assert "Best fitness in each generation: mean over runs, with 95 % bands (bootstrap)." in captions
 
 
 def test_one_group_is_alone(plugins: Plugins) -> None:

@@ -10,12 +10,12 @@ __all__ = ["CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "factor_of", 
 
 NAMES: Mapping[Yardstick, str] = {"score": "best pair simulated", "fitness": "best fitness"}
 
-CURVE_NAMES: Mapping[Yardstick, str] = {"score": "best pair so far", "fitness": "best fitness"}
+CURVE_NAMES: Mapping[Yardstick, str] = {"score": "best score so far", "fitness": "best fitness"}
 """Titles of axes of values over generations; the score of the best pair never decreases."""
 
 CURVE_CAPTIONS: Mapping[Yardstick, str] = {
-    "score": "The score of the best pair simulated so far, after each generation",
-    "fitness": "The best fitness in each generation",
+    "score": "Best score so far, after each generation",
+    "fitness": "Best fitness in each generation",
 }
 
 

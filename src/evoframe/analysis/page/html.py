@@ -7,7 +7,6 @@ import functools
 import hashlib
 import json
 import math
-import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib import resources
@@ -44,7 +43,6 @@ _QUANTA = 32767  # displacements are stored as 16-bit integers
 _NOTICEABLE = 0.15  # largest initial displacement after exaggeration, as a fraction of the body's extent
 _MOST = 10.0  # largest exaggeration, as a multiple of the initial one
 _STILL = 1e-9  # fraction of the extent; smaller displacements are rounding errors
-_METERS = re.compile(r"(?<=\()m(?=\)$)")  # the unit at the end of a column's name
 
 
 @attrs.frozen
@@ -107,11 +105,7 @@ class Cell:
 
 @attrs.frozen
 class Table:
-    """A table; numbers are displayed with four digits.
-
-    Columns of meters, whose names end with ``(m)``, are displayed in millimeters, like all other lengths of
-    the page.
-    """
+    """A table; numbers are displayed with four digits."""
 
     kind: ClassVar[str] = "table"
     caption: str
@@ -120,16 +114,12 @@ class Table:
     @property
     def columns(self) -> list[str]:
         """Names of the columns."""
-        return [_METERS.sub("mm", str(column)) for column in self.frame.columns]
+        return [str(column) for column in self.frame.columns]
 
     @functools.cached_property
     def rows(self) -> list[list[Cell]]:
         """Cells of each row."""
-        factors = [1000 if _METERS.search(str(column)) else 1 for column in self.frame.columns]
-        return [
-            [_cell(value, factor) for value, factor in zip(row, factors, strict=True)]
-            for row in self.frame.itertuples(index=False)
-        ]
+        return [[_cell(value) for value in row] for row in self.frame.itertuples(index=False)]
 
     @property
     def numeric(self) -> list[bool]:
@@ -241,11 +231,11 @@ def _in_script(document: Mapping[str, Any]) -> str:
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def _cell(value: Any, factor: int = 1) -> Cell:
+def _cell(value: Any) -> Cell:
     if isinstance(value, float | np.floating):
-        return Cell("-" if math.isnan(value) else f"{factor * value:.4g}", is_number=True)
+        return Cell("-" if math.isnan(value) else f"{value:.4g}", is_number=True)
     if isinstance(value, int | np.integer) and not isinstance(value, bool):
-        return Cell(str(factor * value), is_number=True)
+        return Cell(str(value), is_number=True)
     return Cell("-" if value is None else str(value), is_number=False)
 
 
