@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Tests the page of reports in a headless browser. Installs Chromium if it is missing and can be installed.
+# Opens the page of reports in a browser without a screen. Installs Chromium where that is missing and can be installed.
 #
 #   PYTHON=/path/to/python tests/browser/browser.sh [pytest's arguments ...]
 #
-# CHROMIUM=/path/to/chromium selects an installed one.
+# CHROMIUM=/path/to/chromium chooses one that is there.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -18,7 +18,7 @@ find_chromium() {
 
 install_chromium() {
     [[ $(id -u) == 0 ]] && command -v apt-get >/dev/null || return 1
-    echo "browser.sh: Chromium not found; installing it with apt-get" >&2
+    echo "browser.sh: no Chromium is here; apt-get installs one" >&2
     local log
     log=$(mktemp)
     export DEBIAN_FRONTEND=noninteractive
@@ -28,8 +28,8 @@ install_chromium() {
 }
 
 if ! find_chromium && ! { install_chromium && find_chromium; }; then
-    echo "browser.sh: Chromium not found; install it (Debian and Ubuntu: apt-get install chromium)," \
-        "or set CHROMIUM to its path" >&2
+    echo "browser.sh: Chromium is needed and is not here; install it (Debian and Ubuntu: apt-get install chromium)," \
+        "or set CHROMIUM to one" >&2
     exit 1
 fi
 export CHROMIUM
