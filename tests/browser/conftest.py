@@ -1,4 +1,4 @@
-"""A browser without a screen, and the pages that it looks at."""
+"""A headless browser, and the pages that it opens."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ _FLAGS = (
 
 @attrs.define
 class Opened:
-    """A page that is open, and what it has said and asked for so far.
+    """An open page with its errors and requests so far.
 
     Attributes:
         page: The page.
-        complaints: Errors of its console, and exceptions that nobody caught.
-        requests: The addresses that it asked for.
+        errors: Errors on the console, and uncaught exceptions.
+        requests: Requested addresses.
     """
 
     page: Page
-    complaints: list[str] = attrs.field(factory=list)
+    errors: list[str] = attrs.field(factory=list)
     requests: list[str] = attrs.field(factory=list)
 
     def scroll_through(self) -> None:
-        """Bring everything into view once, as charts are drawn only then."""
+        """Scroll each chart into view, which draws it."""
         drawn = self.page.locator(".chart, .motion")
         for number in range(drawn.count()):
             drawn.nth(number).scroll_into_view_if_needed()
@@ -52,11 +52,13 @@ def browser() -> Iterator[Browser]:
 def opened(browser: Browser) -> Iterator[Callable[..., Opened]]:
     pages = []
 
-    def open_(path: Path, width: int = 1100, colours: str = "light") -> Opened:
-        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=colours)  # type: ignore[arg-type]
+    def open_(path: Path, width: int = 1100, colors: str = "light") -> Opened:
+        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=colors)  # type: ignore[arg-type]
         found = Opened(page)
-        page.on("console", lambda said: found.complaints.append(said.text) if said.type == "error" else None)
-        page.on("pageerror", lambda error: found.complaints.append(str(error)))
+        page.on(
+            "console", lambda message: found.errors.append(message.text) if message.type == "error" else None
+        )
+        page.on("pageerror", lambda error: found.errors.append(str(error)))
 
         def note(request: Request) -> None:
             found.requests.append(request.url)
@@ -72,8 +74,8 @@ def opened(browser: Browser) -> Iterator[Callable[..., Opened]]:
 
 
 def evoframe(directory: Path, *arguments: str) -> None:
-    made = python("-m", "evoframe", *arguments, directory=directory)
-    assert made.returncode == 0, made.stderr
+    result = python("-m", "evoframe", *arguments, directory=directory)
+    assert result.returncode == 0, result.stderr
 
 
 @pytest.fixture(scope="session")

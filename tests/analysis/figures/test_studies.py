@@ -17,7 +17,7 @@ from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from evoframe.analysis.data.studies import YARDSTICKS, StudyData, View, Yardstick
-from evoframe.analysis.data.units import NAMES
+from evoframe.analysis.data.units import CURVE_NAMES
 from evoframe.analysis.figures.studies import curves, finals, ranks
 from evoframe.analysis.statistics.corrections import CORRECTIONS, Correction
 from evoframe.analysis.statistics.groups import compare
@@ -38,7 +38,7 @@ def test_curves_are_the_means_of_runs_within_their_bands(data: StudyData, yardst
     [view] = data.views(yardstick)
     figure = curves(view, yardstick, data.unit)
     [axes], [legend] = figure.axes, figure.legends
-    assert axes.get_ylabel() == f"{NAMES[yardstick]} (mm)"
+    assert axes.get_ylabel() == f"{CURVE_NAMES[yardstick]} (mm)"
     assert figure.get_suptitle() == view.title == "n = 2"
     assert [text.get_text() for text in legend.get_texts()] == ["AM: 30", "WM: 30", "GM: 30", "HM: 30"]
     for line, band, rows in zip(axes.lines, axes.collections, view.groups.values(), strict=True):

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import attrs
 
 from evoframe.analysis.data.geometries import validate_geometry
+from evoframe.analysis.data.samples import Sample, samples_of
 from evoframe.contract import (
     Geometry,
     NetworkGraph,
@@ -57,6 +58,7 @@ class ChampionData:
         networks: Networks of the populations whose evolvers support graphs.
         verification: The champion's scores with one setting changed at a time; ``None`` if they were not
             measured.
+        samples: Samples of the track that the objective compares, if it selects some.
     """
 
     score: float
@@ -65,6 +67,7 @@ class ChampionData:
     track: str | None
     networks: tuple[DrawnNetwork, ...]
     verification: Verification | None
+    samples: tuple[Sample, ...] = ()
 
 
 def load_champion(run: Run, plugins: Plugins) -> ChampionData:
@@ -84,14 +87,17 @@ def load_champion(run: Run, plugins: Plugins) -> ChampionData:
             if isinstance(simulator, SupportsGeometry)
             else None
         )
-    drawn = geometry.tracks if geometry else {}
+        drawn = geometry.tracks if geometry else {}
+        track = next((track for track in objective.record.tracks if track in drawn), None)
+        samples = () if track is None else samples_of(simulator, objective, design, track)
     return ChampionData(
         score=run.champion().score,
         unit=unit_of(objective),
         geometry=geometry,
-        track=next((track for track in objective.record.tracks if track in drawn), None),
+        track=track,
         networks=tuple(_networks(run, config)),
         verification=run.verification(),
+        samples=samples,
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any, Literal, TypeAlias
 import attrs
 import pandas as pd
 
+from evoframe.analysis.data.facts import facts_of
 from evoframe.analysis.statistics.groups import ranked
 from evoframe.contract import unit_of
 from evoframe.documents import differences
@@ -51,6 +52,7 @@ class StudyData:
         settings: Text of the study file.
         values: Key of the grid -> text of a value in rows -> the value, if it is a number or a string.
         directory: Directory of the study.
+        facts: Settings that a reader needs first: label -> values.
     """
 
     label: str
@@ -63,6 +65,7 @@ class StudyData:
     settings: str = attrs.field(default="", repr=False)
     values: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict, repr=False)
     directory: Path = Path()
+    facts: Mapping[str, str] = attrs.field(factory=dict, repr=False)
 
     @property
     def frame(self) -> pd.DataFrame:
@@ -165,10 +168,11 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
     units = {unit_of(cell.config.objective.component) for cell in study.cells}
     first, *others = [cell.config.simulation() for cell in study.cells]
     here = {run.directory: row.score for run, row in rows.items() if statuses[run].state == "finished"}
+    unit = units.pop() if len(units) == 1 else ""
     return StudyData(
         label=shown_name(directory),
         keys=tuple(study.grid),
-        unit=units.pop() if len(units) == 1 else "",
+        unit=unit,
         planned=len(statuses),
         rows=tuple(rows.values()),
         alike=not any(differences(first, other) for other in others),
@@ -179,4 +183,5 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
             for key, values in study.grid.items()
         },
         directory=directory,
+        facts=facts_of([cell.config.tables() for cell in study.cells], unit),
     )

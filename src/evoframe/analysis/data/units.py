@@ -8,9 +8,17 @@ import pandas as pd
 
 from evoframe.analysis.data.studies import Yardstick
 
-__all__ = ["NAMES", "axis_title", "factor_of", "in_unit", "with_unit"]
+__all__ = ["CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "factor_of", "in_unit", "with_unit"]
 
 NAMES: Mapping[Yardstick, str] = {"score": "best score", "fitness": "best fitness"}
+
+CURVE_NAMES: Mapping[Yardstick, str] = {"score": "best score so far", "fitness": "best fitness"}
+"""Titles of axes of values over generations; the score of the best pair never decreases."""
+
+CURVE_CAPTIONS: Mapping[Yardstick, str] = {
+    "score": "Best score so far, after each generation",
+    "fitness": "Best fitness in each generation",
+}
 
 
 def factor_of(unit: str) -> float:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import NAMES, factor_of
+from evoframe.analysis.data.units import CURVE_NAMES, factor_of
 from evoframe.analysis.statistics.groups import FEWEST
 from evoframe.record import Run
 from evoframe.study import score_curve
@@ -82,7 +82,7 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
     score = np.array(score_curve(run, len(populations))) * factor
     return [
         *drawn,
-        Line(NAMES["score"], score, _BLACK, _DOTTED),
+        Line(CURVE_NAMES["score"], score, _BLACK, _DOTTED),
     ]  # drawn last, because the best fitness is almost as high
 
 

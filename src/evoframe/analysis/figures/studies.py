@@ -15,7 +15,7 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import NAMES, axis_title, factor_of
+from evoframe.analysis.data.units import CURVE_NAMES, NAMES, axis_title, factor_of
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, break_lines, row_height, text_width
@@ -51,7 +51,7 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
 
 def curves_of(drawn: Sequence[Line], view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     """Draw :func:`curves` from existing lines of the view, whose bands take long to compute."""
-    return draw_lines(drawn, axis_title(NAMES[yardstick], unit), view.title, f"{view.key}: runs")
+    return draw_lines(drawn, axis_title(CURVE_NAMES[yardstick], unit), view.title, f"{view.key}: runs")
 
 
 @plain

@@ -1,6 +1,6 @@
-"""The page of a report: one HTML file that needs no other file and no network.
+"""Page of a report: one HTML file that requires no other file and no network.
 
-:func:`page` makes it of sections, whose blocks are words, tables, pictures, charts and a body that moves.
+:func:`page` builds it from sections. Their blocks are paragraphs, tables, pictures, charts and a moving body.
 """
 
 from evoframe.analysis.page.charts import finals_chart, lines_chart

@@ -1,4 +1,4 @@
-"""One page that holds all of a report: no other file and no network is needed to look at it."""
+"""Page that contains a whole report: viewing it requires no other file and no network."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from plotly.graph_objects import Figure as Plot
 from plotly.offline import get_plotlyjs
 
 from evoframe._version import __version__
+from evoframe.analysis.data.samples import Sample
 from evoframe.analysis.output.names import slugs
 from evoframe.contract import Geometry
 
@@ -38,10 +39,10 @@ __all__ = [
     "page",
 ]
 
-_QUANTA = 32767  # displacements are told as 16-bit numbers
-_NOTICEABLE = 0.15  # of the body's extent: how far the exaggeration moves it at first
-_MOST = 10.0  # times that
-_STILL = 1e-9  # of the extent: smaller displacements are rounding, and no motion
+_QUANTA = 32767  # displacements are stored as 16-bit integers
+_NOTICEABLE = 0.15  # largest initial displacement after exaggeration, as a fraction of the body's extent
+_MOST = 10.0  # largest exaggeration, as a multiple of the initial one
+_STILL = 1e-9  # fraction of the extent; smaller displacements are rounding errors
 
 
 @attrs.frozen
@@ -54,7 +55,7 @@ class Words:
 
 @attrs.frozen
 class Source:
-    """A text as it stands in a file, folded away."""
+    """The text of a file, folded."""
 
     kind: ClassVar[str] = "source"
     caption: str
@@ -63,7 +64,7 @@ class Source:
 
 @attrs.frozen
 class Picture:
-    """A figure of matplotlib, as the bytes of an SVG file."""
+    """A matplotlib figure, as the bytes of an SVG file."""
 
     kind: ClassVar[str] = "picture"
     caption: str
@@ -71,15 +72,16 @@ class Picture:
 
     @property
     def base64(self) -> str:
-        """The file as it stands in an address."""
+        """The file as the payload of a data URL."""
         return base64.b64encode(self.svg).decode()
 
 
 @attrs.frozen
 class Chart:
-    """A figure of plotly.
+    """A plotly figure.
 
-    A trace with ``meta = {"colour": n}`` gets the n-th colour of the page, light or dark.
+    A trace with ``meta = {"color": n}`` is drawn in the n-th color of the page's light or dark theme. Traces
+    with ``meta = {"label": text}`` are listed in a legend below the chart.
     """
 
     kind: ClassVar[str] = "chart"
@@ -89,13 +91,13 @@ class Chart:
 
     @property
     def json(self) -> str:
-        """The figure as it stands in the page."""
+        """The figure as JSON, safe inside a ``script`` element."""
         return _in_script(self.plot.to_plotly_json())
 
 
 @attrs.frozen
 class Cell:
-    """A cell of a table, as it is shown."""
+    """A table cell as displayed."""
 
     text: str
     is_number: bool
@@ -103,7 +105,7 @@ class Cell:
 
 @attrs.frozen
 class Table:
-    """A table; numbers are shown with four digits."""
+    """A table; numbers are displayed with four digits."""
 
     kind: ClassVar[str] = "table"
     caption: str
@@ -111,39 +113,54 @@ class Table:
 
     @property
     def columns(self) -> list[str]:
-        """The names of its columns."""
+        """Names of the columns."""
         return [str(column) for column in self.frame.columns]
 
     @functools.cached_property
     def rows(self) -> list[list[Cell]]:
-        """Its cells."""
+        """Cells of each row."""
         return [[_cell(value) for value in row] for row in self.frame.itertuples(index=False)]
 
     @property
     def numeric(self) -> list[bool]:
-        """Whether each column has numbers, which a reader compares from the right."""
+        """For each column: true if all its cells are numbers, which are aligned right."""
         return [all(row[column].is_number for row in self.rows) for column in range(len(self.columns))]
 
 
 @attrs.frozen
 class Motion:
-    """A design that moves.
+    """A moving design.
 
     Attributes:
-        caption: What stands below it.
+        caption: Text below it.
         geometry: The design at several times.
-        track: The name of the point whose trace is drawn; ``None`` draws none.
+        track: Name of the point whose trace is drawn; ``None`` draws no trace.
+        samples: Samples of the track that the objective compares; they are marked on the trace.
     """
 
     kind: ClassVar[str] = "motion"
     caption: str
     geometry: Geometry = attrs.field(repr=False)
     track: str | None = None
+    samples: Sequence[Sample] = ()
+
+    @property
+    def compared(self) -> str:
+        """A sentence with the displacement between two samples; empty unless there are two."""
+        if self.track is None or len(self.samples) != 2:
+            return ""
+        first, last = self.samples
+        moved = zip("xyz", first.position, last.position, strict=True)
+        along = ", ".join(f"{axis} {1000 * (end - start):+.3f} mm" for axis, start, end in moved)
+        return (
+            f"The objective compares {first.name} ({first.time:.4f} s) with {last.name} ({last.time:.4f} s). "
+            f"Between them, the {self.track} moves by {along}."
+        )
 
     @property
     def json(self) -> str:
-        """The motion as it stands in the page."""
-        return _in_script(_moving(self.geometry, self.track))
+        """The motion as JSON, safe inside a ``script`` element."""
+        return _in_script(_motion_document(self.geometry, self.track, self.samples))
 
 
 Block: TypeAlias = Words | Source | Picture | Chart | Table | Motion
@@ -151,7 +168,7 @@ Block: TypeAlias = Words | Source | Picture | Chart | Table | Motion
 
 @attrs.frozen
 class Section:
-    """A part of a page with a heading."""
+    """A part of a page, with a heading."""
 
     title: str
     blocks: Sequence[Block]
@@ -159,24 +176,25 @@ class Section:
 
 @attrs.frozen(eq=False)
 class Part:
-    """What a report has of one thing.
+    """Sections and files that one subject adds to a report.
 
     Attributes:
-        sections: Of the page.
-        files: Name -> bytes, beside the page.
+        sections: Sections of the page.
+        files: Files beside the page: name -> bytes.
     """
 
     sections: Sequence[Section] = ()
     files: Mapping[str, bytes] = attrs.field(factory=dict, repr=False)
 
 
-def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
+def page(title: str, lead: str, sections: Sequence[Section], facts: Mapping[str, str] | None = None) -> bytes:
     """Return a page as the bytes of an HTML file.
 
     Args:
-        title: Its heading.
-        lead: A sentence below it.
-        sections: What it shows; empty tables, and sections without anything else, are left out.
+        title: Heading of the page.
+        lead: Sentence below the heading.
+        sections: Sections; empty tables, and sections that contain nothing else, are omitted.
+        facts: Settings listed below the lead: label -> value.
     """
     full = [
         Section(section.title, [b for b in section.blocks if not isinstance(b, Table) or len(b.frame)])
@@ -191,11 +209,14 @@ def page(title: str, lead: str, sections: Sequence[Section]) -> bytes:
     text = template.render(
         title=title,
         lead=lead,
+        facts=facts or {},
         sections=list(zip(anchors, shown, strict=True)),
         version=__version__,
         style=_file("page.css"),
         scripts=scripts,
-        hashes=[f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests],  # no other may run
+        hashes=[
+            f"'sha256-{base64.b64encode(digest).decode()}'" for digest in digests
+        ],  # of the only scripts that may run
     )
     return text.encode()
 
@@ -205,7 +226,7 @@ def _file(name: str) -> str:
 
 
 def _in_script(document: Mapping[str, Any]) -> str:
-    """Return JSON that may stand in an element ``script``: nothing in it ends the element."""
+    """Return JSON that is safe inside a ``script`` element: it contains nothing that ends the element."""
     text = json.dumps(document, default=lambda array: array.tolist(), allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
@@ -213,12 +234,12 @@ def _in_script(document: Mapping[str, Any]) -> str:
 def _cell(value: Any) -> Cell:
     if isinstance(value, float | np.floating):
         return Cell("-" if math.isnan(value) else f"{value:.4g}", is_number=True)
-    if value is None:
-        return Cell("-", is_number=False)
-    return Cell(str(value), is_number=isinstance(value, int | np.integer) and not isinstance(value, bool))
+    if isinstance(value, int | np.integer) and not isinstance(value, bool):
+        return Cell(str(value), is_number=True)
+    return Cell("-" if value is None else str(value), is_number=False)
 
 
-def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
+def _motion_document(geometry: Geometry, track: str | None, samples: Sequence[Sample]) -> dict[str, Any]:
     moves = [part.vertices - part.vertices[0] for part in geometry.parts]
     points = None if track is None else geometry.tracks[track]
     largest = max(float(np.abs(moved).max()) for moved in moves)
@@ -227,7 +248,7 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
         moves, largest = [np.zeros_like(moved) for moved in moves], 0.0
     exaggeration = _round(_NOTICEABLE * extent / largest) if largest else 1
     step = largest / _QUANTA or 1.0
-    # For each axis where the body is at rest, and how far it moves down and up from there.
+    # For each axis: least and greatest coordinate at rest, least and greatest displacement.
     rest = np.concatenate([part.vertices[0] for part in geometry.parts])
     moved = np.concatenate([(part.vertices - part.vertices[0]).reshape(-1, 3) for part in geometry.parts])
     bounds = np.stack([rest.min(axis=0), rest.max(axis=0), moved.min(axis=0), moved.max(axis=0)], axis=1)
@@ -236,8 +257,9 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
         "step": step,
         "parts": [
             {
-                "name": escape(part.name, quote=False),  # plotly reads some HTML
-                "colour": part.colour,
+                "label": part.name,
+                "name": escape(part.name, quote=False),  # plotly interprets some HTML
+                "color": part.colour,
                 "opacity": part.opacity,
                 "faces": part.faces,
                 "rest": _base64(part.vertices[0].astype("<f4")),
@@ -246,14 +268,17 @@ def _moving(geometry: Geometry, track: str | None) -> dict[str, Any]:
             for part, moved in zip(geometry.parts, moves, strict=True)
         ],
         "bounds": bounds,
-        "track": None if points is None else {"name": escape(str(track), quote=False), "positions": points},
+        "track": None
+        if points is None
+        else {"label": track, "name": escape(str(track), quote=False), "positions": points},
+        "samples": [attrs.asdict(sample) for sample in samples],
         "exaggeration": exaggeration,
         "most": max(10, int(_MOST * exaggeration)),
     }
 
 
 def _round(value: float) -> int:
-    """Return 1, 2 or 5 times a power of ten, the last that is not above *value*, but at least 1."""
+    """Return the largest of 1, 2 and 5 times a power of ten that does not exceed *value*; at least 1."""
     if value < 1.0:
         return 1
     power = 10 ** math.floor(math.log10(value))

@@ -26,7 +26,7 @@ def champion_part(data: ChampionData, whose: str) -> Part:
         blocks.append(Words("Its simulator does not support geometries, so the body is not drawn."))
     else:
         caption = "Simulated motion of the champion, with exaggerated displacements. Drag to rotate."
-        blocks.append(Motion(caption, data.geometry, data.track))
+        blocks.append(Motion(caption, data.geometry, data.track, data.samples))
         files |= figure_files(body(data.geometry, score), "champion-body")
     if data.verification is not None:
         table = verification_table(data.verification)

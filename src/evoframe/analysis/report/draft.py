@@ -21,6 +21,7 @@ class Draft:
         sections: Sections of the page.
         files: Name -> bytes of all files except the page.
         words: Text that the command prints.
+        facts: Settings listed at the top of the page: label -> value.
     """
 
     title: str
@@ -28,7 +29,8 @@ class Draft:
     sections: Sequence[Section]
     files: Mapping[str, bytes] = attrs.field(repr=False)
     words: str
+    facts: Mapping[str, str] = attrs.field(factory=dict)
 
     def all_files(self) -> dict[str, bytes]:
         """Return all files of the report, including the page: name -> bytes."""
-        return {**self.files, "report.html": page(self.title, self.lead, self.sections)}
+        return {**self.files, "report.html": page(self.title, self.lead, self.sections, self.facts)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from evoframe.analysis.data.champions import ChampionData, load_champion
+from evoframe.analysis.data.facts import facts_of
 from evoframe.analysis.data.tables import versions_table
 from evoframe.analysis.data.units import axis_title, in_unit, with_unit
 from evoframe.analysis.figures.lines import lines_of_run
@@ -22,7 +23,7 @@ from evoframe.registry import Plugins
 
 __all__ = ["draft_of_run"]
 
-_CAPTION = "Score of the best pair so far, and best and mean fitness of each population, by generation."
+_CAPTION = "Score of the best pair so far; best and mean fitness of each population in each generation."
 
 
 def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") -> Draft:
@@ -40,7 +41,7 @@ def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") ->
     """
     champion = load_champion(run, plugins)
     title, lead = shown_name(run.directory), _lead(run, champion)
-    curves, label = lines_of_run(run, champion.unit), axis_title("score", champion.unit)
+    curves, label = lines_of_run(run, champion.unit), axis_title("score, fitness", champion.unit)
     summary = _summary(run, champion)
     shown = champion_part(champion, "the best pair of the run")
     robustness = robustness_part(run.directory, plugins, correction)
@@ -70,6 +71,7 @@ def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") ->
             **robustness.files,
         },
         words=f"{title}: {lead}\n",
+        facts=facts_of([run.config], champion.unit),
     )
 
 

@@ -21,7 +21,7 @@ from evoframe.analysis.data.tables import (
     summary_table,
     versions_table,
 )
-from evoframe.analysis.data.units import NAMES, axis_title
+from evoframe.analysis.data.units import CURVE_CAPTIONS, CURVE_NAMES, NAMES, axis_title
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.studies import curves_of, finals, ranks
 from evoframe.analysis.output.names import slugs
@@ -119,6 +119,7 @@ def draft_of_study(data: StudyData, plugins: Plugins, correction: Correction = "
             "conclusions.txt": words.encode(),
         },
         words=words,
+        facts=data.facts,
     )
 
 
@@ -183,9 +184,8 @@ class _Shown:
         blocks: list[Block] = [Words(f"{name.capitalize()} by {view.key}: {first}"), *map(Words, more)]
         if self.lines:
             bands = ", with 95 % bootstrap bands" if all(line.band for line in self.lines) else ""
-            plot = lines_chart(self.lines, axis_title(name, self.unit))
-            so_far = " so far" if self.compared.yardstick == "score" else ""
-            caption = f"{name.capitalize()}{so_far} by generation: mean over runs{bands}."
-            blocks.append(Chart(caption, plot))
+            yardstick = self.compared.yardstick
+            plot = lines_chart(self.lines, axis_title(CURVE_NAMES[yardstick], self.unit))
+            blocks.append(Chart(f"{CURVE_CAPTIONS[yardstick]}: mean over runs{bands}.", plot))
         plot = finals_chart(view, self.compared.yardstick, self.unit)
         return [*blocks, Chart(f"{name.capitalize()} of every run, final values.", plot)]
