@@ -121,7 +121,7 @@ def paper_model() -> Callable[..., Model]:
 
 
 @pytest.fixture
-def say(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
+def report(capsys: pytest.CaptureFixture[str]) -> Callable[[str], None]:
     """Print a measurement in spite of pytest's capturing."""
 
     def write(text: str) -> None:

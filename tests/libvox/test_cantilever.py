@@ -55,14 +55,14 @@ def settled(small_model: ModelMaker, follow: Follow, n: int, axis: int, slope: f
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("n", [2, 5, 10, 20])
 def test_a_bar_bends_like_a_beam(
-    small_model: ModelMaker, follow: Follow, n: int, axis: int, say: Callable[[str], None]
+    small_model: ModelMaker, follow: Follow, n: int, axis: int, report: Callable[[str], None]
 ) -> None:
     """The remaining differences are rounding of small angles and the square of the slope, 1e-3."""
     gravity, *sag = settled(small_model, follow, n, axis, slope=1e-3)
     points = under_points(np.arange(1, n) * L, WEIGHT_PER_G * gravity)
     spread = under_own_weight((n - 1) * L, (n - 0.5) * L, WEIGHT_PER_G * gravity / L)
     off = float(np.abs(np.array(sag[1:]) / points - 1).max())
-    say(
+    report(
         f"bar of {n:2} along {'xy'[axis]}: from Euler-Bernoulli with point loads {off:.1e}, "
         f"of the tip with a spread load {sag[-1] / spread - 1:+.4f}"
     )

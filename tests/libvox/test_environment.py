@@ -39,7 +39,7 @@ def load(name: str, **how: Any) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
 
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("name", CASES)
-def test_motion_agrees_with_the_engine(name: str, kernel: str, say: Callable[[str], None]) -> None:
+def test_motion_agrees_with_the_engine(name: str, kernel: str, report: Callable[[str], None]) -> None:
     golden, case, model = load(name, kernel=kernel)
     body = golden["material"]
     dt, steps = model.time_steps(body[None])
@@ -56,7 +56,7 @@ def test_motion_agrees_with_the_engine(name: str, kernel: str, say: Callable[[st
     }
     asked, limit = max(1e-7, 10.0 * case["nudge_max_dev_m"]), LIMITS.get(name, LIMIT)
     deviations = "  ".join(f"{track} {value:7.1e}" for track, value in off.items())
-    say(f"{name:25} {kernel:8} {deviations} m (limit {limit:.0e}, asked {asked:.1e})")
+    report(f"{name:25} {kernel:8} {deviations} m (limit {limit:.0e}, asked {asked:.1e})")
     assert max(off.values()) < limit < asked
     assert not result.diverged_step.any()
 

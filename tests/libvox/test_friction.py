@@ -53,7 +53,7 @@ def test_a_sliding_voxel_stops_at_the_expected_distance(
     material: MaterialMaker,
     follow: Follow,
     friction: float,
-    say: Callable[[str], None],
+    report: Callable[[str], None],
 ) -> None:
     places, dt = slide(small_model, material, follow, (friction, friction))
     for voxel in range(2):
@@ -62,7 +62,7 @@ def test_a_sliding_voxel_stops_at_the_expected_distance(
         measured = float(np.linalg.norm(way[-1] - way[1]))
         deceleration = friction * -G
         continuous = speed**2 / (2 * deceleration)
-        say(
+        report(
             f"friction {friction}: from {speed:.4f} m/s it slides {measured:.6f} m, "
             f"v^2 / (2 mu g) = {continuous:.6f} m, the sum over steps {slid(speed, deceleration, dt):.6f} m"
         )

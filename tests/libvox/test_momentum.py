@@ -107,11 +107,11 @@ def spins(small_model: ModelMaker, follow: Follow, amplitude: float, **changes: 
 
 
 def test_angular_momentum_is_conserved_to_second_order(
-    small_model: ModelMaker, follow: Follow, say: Callable[[str], None]
+    small_model: ModelMaker, follow: Follow, report: Callable[[str], None]
 ) -> None:
     sizes = (0.01, 0.1, 1.0)
     found = [spins(small_model, follow, size, self_collision=False) for size in sizes]
-    say("angular momentum of the body against its voxels': " + ", ".join(f"{a / b:.1e}" for a, b in found))
+    report("angular momentum of the body against its voxels': " + ", ".join(f"{a / b:.1e}" for a, b in found))
     for (total, flying), size in zip(found, sizes, strict=True):
         assert total < 5e-3 * size * flying
     for (less, _), (more, _) in pairwise(found):

@@ -47,29 +47,29 @@ def test_nothing_diverges(result: Result) -> None:
 
 
 def test_displacements_agree_with_the_engine(
-    paper: Arrays, result: Result, say: Callable[[str], None]
+    paper: Arrays, result: Result, report: Callable[[str], None]
 ) -> None:
     z = result.tracks["tip"][..., 2]
     off = largest(z[:, 21] - z[:, 1], paper["displacement"])
-    say(f"36 displacements: largest deviation {off:.2e} m (limit 1e-9)")
+    report(f"36 displacements: largest deviation {off:.2e} m (limit 1e-9)")
     assert off < 1e-9
 
 
 @pytest.mark.parametrize(("track", "golden"), [("tip", "tip"), ("face", "free_face_mean")])
 def test_traces_agree_with_the_engine(
-    paper: Arrays, result: Result, track: Track, golden: str, say: Callable[[str], None]
+    paper: Arrays, result: Result, track: Track, golden: str, report: Callable[[str], None]
 ) -> None:
     off = largest(result.tracks[track], paper[golden])
-    say(f"{track} after each of 22 steps: largest deviation {off:.2e} m (limit 1e-9)")
+    report(f"{track} after each of 22 steps: largest deviation {off:.2e} m (limit 1e-9)")
     assert off < 1e-9
 
 
 def test_final_positions_agree_with_the_engine(
-    paper: Arrays, result: Result, say: Callable[[str], None]
+    paper: Arrays, result: Result, report: Callable[[str], None]
 ) -> None:
     final = result.tracks["voxels"][:, -1]
     off = largest(final, paper["final_position"])
-    say(f"every voxel after the last step: largest deviation {off:.2e} m (limit 1e-8)")
+    report(f"every voxel after the last step: largest deviation {off:.2e} m (limit 1e-8)")
     assert off < 1e-8
     assert (np.isnan(final).all(axis=-1) == (paper["material"] == 0)).all()
 

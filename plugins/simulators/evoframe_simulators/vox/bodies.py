@@ -27,13 +27,13 @@ def check_design(design: Design) -> None:
     """
     material, phase = design.roles[MORPHOLOGY], design.roles[CONTROLLER]
     if material.ndim != 3 or material.dtype != np.uint8:
-        raise InputError(f"found {_described(material)}, expected uint8[X, Y, Z]", key=MORPHOLOGY)
+        raise InputError(f"found {_describe_array(material)}, expected uint8[X, Y, Z]", key=MORPHOLOGY)
     if phase.shape != material.shape or phase.dtype != np.float64:
         expected = f"float64{list(material.shape)}"
-        raise InputError(f"found {_described(phase)}, expected {expected}", key=CONTROLLER)
+        raise InputError(f"found {_describe_array(phase)}, expected {expected}", key=CONTROLLER)
 
 
-def _described(array: NDArray[Any]) -> str:
+def _describe_array(array: NDArray[Any]) -> str:
     return f"{array.dtype}{list(array.shape)}"
 
 
