@@ -172,7 +172,7 @@ def test_curves_can_be_imported_later(made: tuple[Study, Path, list[Planned]], t
     assert {len(row.fitness_curve) for row in imported_rows(study, there).values()} == {5}
 
 
-def test_a_table_that_contradicts_what_was_imported_is_refused(
+def test_a_table_that_contradicts_imported_rows_is_refused(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path
 ) -> None:
     study, directory, _ = made
