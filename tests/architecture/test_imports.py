@@ -30,6 +30,7 @@ USUAL = frozenset(
         "functools",
         "graphlib",
         "hashlib",
+        "heapq",
         "html",
         "importlib.metadata",
         "importlib.resources",
