@@ -16,7 +16,7 @@ from evoframe import load_run
 
 _SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
 _SLOWER = ("--set", "simulator={name='toy-slow', delay=0.1}")  # lasts until another process has started
-_HANGING = ("--set", "simulator={name='toy-hanging', mended='mended'}")
+_HANGING = ("--set", "simulator={name='toy-hanging', fixed='fixed'}")
 
 
 @pytest.fixture
@@ -131,14 +131,14 @@ def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
     message, todo = hung.stderr.splitlines()[-2:]
     assert message.startswith("Error: simulator: 'toy-hanging' (plugin 'toys' of toys local): ")
     assert "evoframe resume left" in todo
-    (tmp_path / "mended").touch()
+    (tmp_path / "fixed").touch()
     assert evoframe("resume", *toy, "left").returncode == 0
 
 
 def test_a_second_signal_does_not_wait_for_what_hangs(toy: list[str], tmp_path: Path) -> None:
     hanging = [
         "--set",
-        "simulator={name='toy-hanging', beyond=-1.0, mended='mended'}",
+        "simulator={name='toy-hanging', beyond=-1.0, fixed='fixed'}",
         "--set",
         "executor={name='threads', workers=2}",
     ]

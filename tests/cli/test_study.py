@@ -130,12 +130,12 @@ def test_runs_that_fail_are_listed_and_retried_on_demand(
 def test_champions_that_were_not_verified_are_verified_by_the_next_sitting(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:
-    unverifiable = 'grid.simulator=[{name="toy-unverifiable", mended="mended"}]'
+    unverifiable = 'grid.simulator=[{name="toy-unverifiable", fixed="fixed"}]'
     arguments = ["study", *toy, "--set", unverifiable, "--set", "runs=1", "--out", "s"]
     failed = evoframe(*arguments)
     assert failed.returncode == 1
     assert ": no variant fits" in failed.stderr
-    (tmp_path / "mended").touch()
+    (tmp_path / "fixed").touch()
     assert evoframe(*arguments).returncode == 1  # not tried again
     first, second = (tmp_path / "s").glob("*/*/00")
     (first / "failure.json").unlink()  # as if the process had been killed before it verified
@@ -184,7 +184,7 @@ def test_a_run_whose_process_is_killed_has_failed_and_the_others_go_on(
 
 
 def test_workers_end_with_the_study(toy: list[str], tmp_path: Path) -> None:
-    hanging = 'grid.simulator=[{name="toy-hanging", beyond=-1.0, mended="mended"}]'
+    hanging = 'grid.simulator=[{name="toy-hanging", beyond=-1.0, fixed="fixed"}]'
     with started(tmp_path, "study", *toy, "--set", hanging, "--out", "left") as process:
         until = time.monotonic() + 60
         while len(children(process.pid)) < 2 and time.monotonic() < until:

@@ -25,20 +25,20 @@ Load = Callable[..., RunConfig]
 
 @pytest.fixture
 def hanging(toy_config: Load, toy_plugins: Plugins, tmp_path: Path) -> Load:
-    """Return a loader of configurations whose simulations hang while the file ``mended`` is missing."""
+    """Return a loader of configurations whose simulations hang while the file ``fixed`` is missing."""
     toy_plugins.add(evoframe_executors, Source("tools", "1.0", "executors"))
 
     def load(executor: str, *, once: bool = False) -> RunConfig:
-        mended, flag = tmp_path / "mended", str(once).lower()
-        return toy_config(f"simulator={{name='toy-hanging', mended='{mended}', once={flag}}}", executor)
+        fixed, flag = tmp_path / "fixed", str(once).lower()
+        return toy_config(f"simulator={{name='toy-hanging', fixed='{fixed}', once={flag}}}", executor)
 
     return load
 
 
 def undisturbed(hanging: Load, directory: Path, *, once: bool = False) -> Path:
-    (directory / "mended").touch()
+    (directory / "fixed").touch()
     finished = run(hanging("executor='serial'", once=once), out=directory / "undisturbed")
-    (directory / "mended").unlink()
+    (directory / "fixed").unlink()
     return finished.directory
 
 
@@ -51,7 +51,7 @@ def test_the_run_stops_and_can_be_resumed_after_a_fix(
         run(hanging(executor), out=tmp_path / "run")
     assert caught.value.component == "simulator"
     assert load_run(tmp_path / "run").last_turn() is not None
-    (tmp_path / "mended").touch()
+    (tmp_path / "fixed").touch()
     resume(tmp_path / "run", plugins=toy_plugins)
     assert_same_result(expected, tmp_path / "run")
 
@@ -59,5 +59,5 @@ def test_the_run_stops_and_can_be_resumed_after_a_fix(
 def test_a_process_that_hangs_once_does_not_stop_the_run(hanging: Load, tmp_path: Path) -> None:
     expected = undisturbed(hanging, tmp_path, once=True)
     run(hanging(PROCESSES, once=True), out=tmp_path / "run")
-    assert (tmp_path / "mended").exists()  # created by the simulation that hung
+    assert (tmp_path / "fixed").exists()  # created by the simulation that hung
     assert_same_result(expected, tmp_path / "run")

@@ -219,18 +219,18 @@ class Slow(Product):
 
 @attrs.frozen
 class Hanging(Product):
-    """Hangs if a number is large and the file *mended* is missing; with *once* it creates the file."""
+    """Hangs if a number is large and the file *fixed* is missing; with *once* it creates the file."""
 
     beyond: float = 0.1
-    mended: str = ""
+    fixed: str = ""
     once: bool = False
 
     def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
         outcomes = super().simulate(designs, record)
         large = any(abs(float(outcome.tracks["value"][0, 0])) > self.beyond for outcome in outcomes)
-        if large and not (self.mended and Path(self.mended).exists()):
+        if large and not (self.fixed and Path(self.fixed).exists()):
             if self.once:
-                Path(self.mended).touch()
+                Path(self.fixed).touch()
             time.sleep(3600)
         return outcomes
 
@@ -333,15 +333,15 @@ class Fitting(Varied):
 
 @attrs.frozen
 class Unverifiable(Varied):
-    """Fails to provide variants, after a delay, if the file *mended* is missing."""
+    """Fails to provide variants, after a delay, if the file *fixed* is missing."""
 
     delay: float = 0.0
-    mended: str = ""
+    fixed: str = ""
 
     def variants(self, design: Design, record: Record) -> Sequence[Variant]:
         logging.getLogger(__name__).info("looking for variants")
         time.sleep(self.delay)
-        if self.mended and Path(self.mended).exists():
+        if self.fixed and Path(self.fixed).exists():
             return super().variants(design, record)
         raise InputError("no variant fits")
 
