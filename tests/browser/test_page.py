@@ -201,10 +201,14 @@ def brightness(color: str) -> float:
     return sum(parts) / 3 / 255
 
 
-def test_a_phone_has_no_toolbar(run_page: Path, opened: Callable[..., Any]) -> None:
+def test_a_phone_has_no_toolbar_and_a_swipe_over_a_chart_scrolls(
+    run_page: Path, opened: Callable[..., Any]
+) -> None:
     shown = opened(run_page, width=PHONE)
     shown.scroll_through()
     assert shown.page.locator(".modebar-group").count() == 0
+    for name in ("div.chart", "div.trace"):
+        assert shown.page.locator(name).evaluate("(chart) => chart.layout.dragmode") is False
 
 
 def test_the_toolbar_does_not_cover_data(run_page: Path, opened: Callable[..., Any]) -> None:
