@@ -201,10 +201,14 @@ def brightness(color: str) -> float:
     return sum(parts) / 3 / 255
 
 
-def test_a_phone_has_no_toolbar(run_page: Path, opened: Callable[..., Any]) -> None:
+def test_a_phone_has_no_toolbar_and_a_swipe_over_a_chart_scrolls(
+    run_page: Path, opened: Callable[..., Any]
+) -> None:
     shown = opened(run_page, width=PHONE)
     shown.scroll_through()
     assert shown.page.locator(".modebar-group").count() == 0
+    for name in ("div.chart", "div.trace"):
+        assert shown.page.locator(name).evaluate("(chart) => chart.layout.dragmode") is False
 
 
 def test_the_toolbar_does_not_cover_data(run_page: Path, opened: Callable[..., Any]) -> None:
@@ -247,10 +251,10 @@ def test_legends_are_lists_that_hide_and_show_lines(run_page: Path, opened: Call
 def test_a_table_wider_than_the_screen_has_a_cue(run_page: Path, opened: Callable[..., Any]) -> None:
     cut = """Array.from(document.querySelectorAll(".scroll"))
         .map((table) => [table.scrollWidth > table.clientWidth, !table.nextElementSibling.hidden])"""
-    narrow, wide = (opened(run_page, width=width).page.evaluate(cut) for width in (PHONE, 1100))
-    assert any(is_cut for is_cut, _ in narrow)
-    assert all(is_cut == has_cue for is_cut, has_cue in narrow)
-    assert not any(is_cut or has_cue for is_cut, has_cue in wide)
+    for width in (PHONE, 1100):
+        page = opened(run_page, width=width).page
+        page.wait_for_function(f"{cut}.every(([isCut, hasCue]) => isCut === hasCue)")
+        assert any(is_cut for is_cut, _ in page.evaluate(cut)) == (width == PHONE)
 
 
 def test_settings_stand_at_the_top(run_page: Path, study_page: Path, opened: Callable[..., Any]) -> None:

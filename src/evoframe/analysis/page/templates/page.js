@@ -49,7 +49,9 @@
       for (const key of ["xaxis", "yaxis", "zaxis"]) {
         result.scene[key] = { ...result.scene[key], gridcolor: line, zerolinecolor: line, backgroundcolor: "rgba(0,0,0,0)", color: text };
       }
-    } else if (hasToolbar.matches && !printing) {
+    } else if (!hasToolbar.matches) {
+      result.dragmode = false; // a swipe scrolls the page; it would zoom, with no button to zoom out
+    } else if (!printing) {
       result.margin = { ...result.margin, t: Math.max(TOOLBAR, (result.margin || {}).t || 0) };
     }
     return result;
@@ -75,6 +77,7 @@
     redrawAll();
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redrawAll);
+  hasToolbar.addEventListener("change", redrawAll);
 
   const sourceOf = (element) => JSON.parse(document.getElementById(element.dataset.source).textContent);
 
