@@ -86,7 +86,7 @@ def test_more_runs_and_values_are_added_to_what_is_there(
 ) -> None:
     assert (
         evoframe(
-            "study", *toy, "--set", 'grid={"collaboration.n"=[1]}', "--set", "runs=2", "--out", "s"
+            "study", *toy, "--set", "grid.collaboration.n=[1]", "--set", "runs=2", "--out", "s"
         ).returncode
         == 0
     )

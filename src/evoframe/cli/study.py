@@ -129,11 +129,11 @@ def _planned(plan: StudyPlan) -> Table:
     table.add_row("configurations", f"{len(found.study.cells)}, with {found.study.runs} runs each")
     unverified = f", of which {to_verify} to verify" if to_verify else ""
     table.add_row("runs", f"{len(found.rows)} finished{unverified}, {len(plan.to_run)} to run")
-    table.add_row("pairs", f"at most {sum(planned.cell.pairs for planned in plan.to_run):,} to score")
+    table.add_row("pairs", f"{sum(planned.cell.pairs for planned in plan.to_run):,} to score")
     on = "1 core" if plan.cores == 1 else f"{plan.cores} cores"
-    seconds, measured = plan.estimate.seconds / plan.cores, plan.estimate.measured
-    table.add_row("time", f"at most {duration(seconds)} on {on}, estimated from {measured}")
-    table.add_row("disk space", f"{plan.estimate.megabytes:,.0f} MB in {found.directory}")
+    bound, estimate = plan.estimate.bound, plan.estimate
+    table.add_row("time", f"{bound} {duration(plan.seconds)} on {on}, estimated from {estimate.measured}")
+    table.add_row("disk space", f"{bound} {estimate.megabytes:,.0f} MB in {found.directory}")
     return table
 
 
