@@ -33,8 +33,11 @@ class _RunFailure(_Failure):
     exit_code = 1
 
 
-def _failure(error: EvoframeError) -> _Failure:
-    return (_RunFailure if isinstance(error, RunError) else _Failure)(full_text(error))
+def _failure(ctx: click.Context, error: EvoframeError) -> _Failure:
+    text, modules = full_text(error), modules_of(ctx)
+    if modules and "evoframe resume " in text:  # the core does not know the options of this command
+        text += f"\n  with the plugins of this command: {' '.join(f'-p {module}' for module in modules)}"
+    return (_RunFailure if isinstance(error, RunError) else _Failure)(text)
 
 
 COMMANDS: Mapping[str, str] = {
@@ -77,7 +80,7 @@ class _Program(click.Group):
         try:
             return super().invoke(ctx)
         except EvoframeError as error:
-            raise _failure(error) from error
+            raise _failure(ctx, error) from error
         except KeyboardInterrupt as interrupt:
             click.echo("Interrupted", err=True)
             raise click.exceptions.Exit(exit_code(signal.SIGINT)) from interrupt
@@ -91,7 +94,7 @@ class _Program(click.Group):
         try:
             Observers(plugins_of(ctx).manager).tell("evoframe_commands", cli=group)
         except EvoframeError as error:
-            raise _failure(error) from error
+            raise _failure(ctx, error) from error
         return group
 
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract import RunConfig, SupportsVariants, Turn
+from evoframe.contract import RunConfig, SupportsVariants, Turn, unit_of
 from evoframe.designs import verify_designs
 from evoframe.errors import ComponentError, RunError
 from evoframe.evolution import Coevolution
 from evoframe.files import locked
-from evoframe.messages import cause_of
+from evoframe.messages import cause_of, quantity
 from evoframe.record import Run, Store, Verification, keep_verification
 from evoframe.registry import Observers, Plugins
 
@@ -76,10 +76,11 @@ class Execution:
         return verify_champion(self.config, run)
 
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
+        unit = unit_of(self.config.objective.component)
         for turn in self._coevolution:
             changed = [report.population for report in turn.reports]
             self._store.save(turn, self._coevolution.state(changed))
-            _log_turn(turn)
+            _log_turn(turn, unit)
             observers.tell("evoframe_turn_finished", turn=turn)
             if stop():
                 break
@@ -136,12 +137,12 @@ def verify_champion(config: RunConfig, run: Run) -> Verification | None:
     return verification
 
 
-def _log_turn(turn: Turn) -> None:
+def _log_turn(turn: Turn, unit: str) -> None:
     if turn.best_pair is not None:
-        _log.info("turn %d: new best pair, score %r", turn.index, turn.best_pair.score)
+        _log.info("turn %d: new best pair, score %s", turn.index, quantity(turn.best_pair.score, unit))
     for report in turn.reports:
-        best, mean = report.best, report.mean
-        _log.debug("turn %d: %s: best fitness %r, mean %r", turn.index, report.population, best, mean)
+        best, mean = quantity(report.best, unit), quantity(report.mean, unit)
+        _log.debug("turn %d: %s: best fitness %s, mean %s", turn.index, report.population, best, mean)
 
 
 def _final_figures(coevolution: Coevolution) -> dict[str, Any]:
