@@ -219,9 +219,9 @@
     };
     const layout = () => {
       const aspect = printing ? PAPER.body / PAPER.width : body.clientHeight / body.clientWidth;
-      const away = Math.max(1, 2.5 * aspect); // a narrow view needs distance
+      const away = Math.max(1.2, 2.6 * aspect); // a narrow view needs distance
       const eye = { x: 0.75 * away, y: -1.3 * away, z: 0.55 * away };
-      const scene = { aspectmode: "data", uirevision: "kept", camera: { eye, center: { x: 0, y: 0, z: -0.1 } } };
+      const scene = { aspectmode: "data", uirevision: "kept", camera: { eye, center: { x: 0, y: 0, z: -0.15 } } };
       ranges().forEach((range, axis) => { scene[`${"xyz"[axis]}axis`] = { range, title: { text: `${"xyz"[axis]} (mm)` }, nticks: 5 }; });
       return withTheme({ scene, margin: { l: 0, r: 0, t: 0, b: 0 }, uirevision: "kept" }, "body");
     };
