@@ -15,7 +15,7 @@ from evoframe.cli.context import needing_extra, scored
 def test_quiet_says_only_where_the_run_is(evoframe: Evoframe, before: bool) -> None:
     command = ["run", "quick", "--set", "run.generations=0"]
     ran = evoframe("-q", *command) if before else evoframe(*command, "--quiet")
-    assert (ran.stdout, ran.stderr) == ("runs/quick-1\n", "")
+    assert (ran.stdout, ran.stderr) == ("runs/quick-generations0-1\n", "")
 
 
 def test_no_colour_where_there_is_no_terminal_or_none_is_wanted(evoframe: Evoframe) -> None:

@@ -10,6 +10,7 @@ import toys
 from processes import Evoframe
 
 import evoframe_libvox
+from evoframe import __version__
 
 
 def test_an_installation_that_is_in_order(evoframe: Evoframe) -> None:
@@ -20,7 +21,7 @@ def test_an_installation_that_is_in_order(evoframe: Evoframe) -> None:
         f"libvox kernel {evoframe_libvox.KERNELS[-1]}",
         f"libvox compiler {evoframe_libvox.COMPILER}",
         "simulations in",
-        "of evoframe",
+        f"evoframe {__version__}",
     ):
         assert part in found.stdout
 

@@ -111,7 +111,7 @@ class TestFile:
         refused = evoframe("export", path, "--to", "vxa")
         assert refused.returncode == 2
         assert f"{path}: " in refused.stderr
-        assert "2 designs" in refused.stderr
+        assert "found 2" in refused.stderr
 
     def test_that_is_no_body_is_refused_with_its_name(self, evoframe: Evoframe, tmp_path: Path) -> None:
         path = tmp_path / "champion.json"

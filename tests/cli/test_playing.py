@@ -36,10 +36,12 @@ def test_ends_with_the_verification_of_its_champion(evoframe: Evoframe, tmp_path
     ran = evoframe(*command, "--out", "here")
     assert ran.returncode == 0, ran.stderr
     summary, table = ran.stdout.split("\n\n")
+    *rows, verdict = table.splitlines()
     assert "best pair" in summary
-    assert [line.split()[0] for line in table.splitlines()] == [
+    assert [line.split()[0] for line in rows] == [
         "variant", "unchanged", "gain", "no", "one",
     ]  # fmt: skip
+    assert verdict.startswith("The score comes from gain")
     assert "verifying" in ran.stderr
     assert f"evoframe report here -p {toys.__file__}" in ran.stderr
     quiet = evoframe("-q", *command, "--out", "quiet")
@@ -87,7 +89,7 @@ def test_interrupt_stops_after_the_turn_and_keeps_it(tmp_path: Path) -> None:
 
 def test_a_second_interrupt_stops_at_once(tmp_path: Path) -> None:
     with slow_run(tmp_path, "simulator={name='toy-slow', delay=3600.0}") as process:
-        told(process, "toy, seed 3: 8 turns")
+        told(process, "seed 3: 8 turns")
         process.send_signal(signal.SIGINT)
         told(process, "Ctrl-C")
         process.send_signal(signal.SIGINT)

@@ -131,7 +131,7 @@ def test_a_local_module_is_a_plugin_with_components_and_commands(evoframe: Evofr
     assert evoframe("config", "show", "-p", "mine", "--set", "aggregator=lowest").returncode == 0
     missing = evoframe("run", "quick", "--plugin", "theirs")
     assert missing.returncode == 2
-    assert re.search("'theirs'.* ModuleNotFoundError", missing.stderr)
+    assert re.search("theirs: .* ModuleNotFoundError", missing.stderr)
 
 
 def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:

@@ -53,10 +53,9 @@ class TestRuns:
         assert made.returncode == 0, made.stderr
         head, *rows = made.stdout.split("\n\n")[0].splitlines()
         assert re.split(r"\s{2,}", head.strip()) == [
-            "bodies", "median mm", "quartiles", "range", "positive", "diverged",
+            "bodies", "median (mm)", "quartiles", "range", "positive", "diverged",
         ]  # fmt: skip
         assert [row.split()[0] for row in rows] == ["run-1", "run-2", "one", "two"]
-        assert "Each controller for itself, the test of the paper: " in made.stdout
         assert made.stderr == "14 files written to robustness\n"
         measured = read_robustness(tmp_path / "robustness")
         assert measured.scores.shape == (30, 4)

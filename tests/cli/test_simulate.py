@@ -223,12 +223,12 @@ ZERO = np.zeros(CELLS)
         (written("material.npy", b"1, 1, 3"), "EOF"),
         (
             written("bodies.npy", b""),
-            "'material'",
+            "material: ",
         ),
-        (arrays(material=SOLID * 2, phase_cycles=ZERO), "material has the code 2"),
+        (arrays(material=SOLID * 2, phase_cycles=ZERO), "material: unknown code 2"),
         (
             arrays(material=SOLID, phase_cycles=np.full(CELLS, np.iinfo(np.int64).min)),
-            "phase_cycles has the value 9.22337e+18",
+            "phase_cycles: found 9.22337e+18",
         ),
     ],
 )
@@ -287,9 +287,9 @@ class TestChampion:
     @pytest.mark.parametrize(
         ("role", "field", "wrong", "message"),
         [
-            ("morphology", "values", lambda array: [7] * len(array["values"]), "material has the code 7"),
-            ("morphology", "shape", lambda array: [len(array["values"])], "morphology is uint8["),
-            ("controller", "shape", lambda array: [len(array["values"])], "controller is float64["),
+            ("morphology", "values", lambda array: [7] * len(array["values"]), "material: unknown code 7"),
+            ("morphology", "shape", lambda array: [len(array["values"])], "morphology: found uint8["),
+            ("controller", "shape", lambda array: [len(array["values"])], "controller: found float64["),
             ("controller", "values", lambda array: [1e300] * len(array["values"]), "the phase"),
         ],
     )

@@ -54,7 +54,8 @@ class TestRun:
         score = load_run(toy_run).champion().score
         verified = evoframe("verify", *TOYS, "here")
         assert verified.returncode == 0, verified.stderr
-        title, *table = verified.stdout.splitlines()
+        title, *table, verdict = verified.stdout.splitlines()
+        assert verdict.startswith("The score comes from gain (0% left)")
         least, middle, greatest = (quantity(factor * score, "m") for factor in (0.9, 1.0, 1.1))
         assert title == "here"
         assert [columns(line) for line in table] == [
@@ -93,7 +94,7 @@ class TestRun:
         champion["score"] = 0.125
         path.write_text(json.dumps(champion))
         table = evoframe("verify", *TOYS, path).stdout.splitlines()
-        assert columns(table[-1]) == ["score in the run", "125 mm"]
+        assert columns(table[-2]) == ["score in the run", "125 mm"]
 
     def test_that_is_no_run_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
         (tmp_path / "empty").mkdir()
