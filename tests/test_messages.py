@@ -10,7 +10,15 @@ import pytest
 from hypothesis import given, strategies as st
 
 from evoframe import InputError
-from evoframe.messages import cause_of, found, full_text, suggestion
+from evoframe.messages import (
+    cause_of,
+    found,
+    full_text,
+    quantity,
+    suggestion,
+    unit_factor,
+    unit_name,
+)
 
 KNOWN = ["aggregator", "executor", "simulator"]
 words = st.text("abcdef", min_size=1, max_size=6)
@@ -74,3 +82,24 @@ def test_notes_follow_an_error_line_by_line() -> None:
 def test_a_cause_has_its_type_unless_it_is_an_error_of_evoframe() -> None:
     assert cause_of(InputError("there is no file")) == "there is no file"
     assert cause_of(KeyError("pivot")) == "KeyError: 'pivot'"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.003781337982330435, "m", "3.781 mm"),
+        (-0.0, "m", "0 mm"),
+        (2.0, "J", "2 J"),
+        (2.0, "", "2"),
+        (12345.678, "", "1.235e+04"),
+    ],
+)
+def test_a_quantity_has_significant_digits_and_a_unit(value: float, unit: str, text: str) -> None:
+    assert quantity(value, unit) == text
+
+
+@given(st.floats(-1e6, 1e6))
+def test_a_length_in_meters_is_shown_in_millimeters(value: float) -> None:
+    number, unit = quantity(value, "m", digits=17).split()
+    assert unit == unit_name("m") == "mm"
+    assert float(number) == pytest.approx(value * unit_factor("m"))

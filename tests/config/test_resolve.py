@@ -16,8 +16,8 @@ from modules import plugin
 
 import evoframe
 from evoframe import ConfigurationError, RunConfig
-from evoframe.config.layers import preset_names
-from evoframe.config.resolve import load_config
+from evoframe.config.layers import layers_in, preset_names
+from evoframe.config.resolve import load_config, resolve_layers
 from evoframe.contract.config import Source
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
@@ -275,3 +275,13 @@ class TestComponentsOfOthers:
         assert (fault.source, fault.key) == ("--set aggregator=mine", "aggregator")
         assert all(part in fault.problem for part in ("'mine'", "'main' of here 1.0", problem))
         assert ("frozen" in fault.problem) == (component is Changeable)
+
+
+def test_a_run_of_a_local_plugin_names_the_option_that_loads_it(installed: Plugins) -> None:
+    components = {"aggregator": "'mine' of mine local", "simulator": "'simulators' of evoframe 0.1.0"}
+    tables = {**load_config("quick").tables(), "provenance": {"components": components}}
+    tables["aggregator"] = {"name": "mine"}
+    with pytest.raises(ConfigurationError) as caught:
+        resolve_layers(layers_in(tables, "config.toml"), "quick", installed)
+    [hint] = caught.value.__notes__
+    assert "-p PATH/mine.py" in hint

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import attrs
@@ -11,7 +12,7 @@ from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
 
-from evoframe import Design, Member, Outcome, Pair, Record, Score, Turn, Workload
+from evoframe import Design, Member, Outcome, Pair, Record, RunConfig, Score, Turn, Workload, assemble
 from evoframe.contract import values
 
 numbers = arrays(st.sampled_from(["uint8", "float64"]), array_shapes(max_dims=3, max_side=3))
@@ -72,3 +73,15 @@ def test_defaults_of_values() -> None:
     assert Record(("a",)) == Record(("a",), every=0.0, samples=None, initial=False, until=0.0)
     assert Member(1, None) == Member(1, None, None, 0, 0, diverged=False)
     assert (Score(0.5).diverged_at, Pair((1,), 0.5).diverged_at) == (None, None)
+
+
+def test_values_with_arrays_and_members_print_in_a_few_lines(toy_config: Callable[..., RunConfig]) -> None:
+    with assemble(toy_config()) as coevolution:
+        turn = next(iter(coevolution))
+    assert turn.best_pair is not None
+    for value in (turn, turn.best_pair, turn.best_pair.design):
+        assert len(str(value)) < 1000
+        assert "\n" not in str(value)
+    assert str(Design({"morphology": np.zeros((20, 8, 8), np.uint8)})) == (
+        "Design(roles=morphology: uint8[20, 8, 8])"
+    )
