@@ -158,7 +158,7 @@ class TestTooShort:
     @pytest.mark.parametrize("name", ["travel", "face-peak"])
     def test_is_refused_before_anything_runs(self, name: str) -> None:
         override = f'objective={{name="{name}", after=0.5}}'
-        with pytest.raises(ConfigurationError, match=r"0\.5 s .*simulator\.duration = 0\.07 s") as caught:
+        with pytest.raises(ConfigurationError, match=r"0\.5 s; .*simulator\.duration = 0\.07 s") as caught:
             load_config(overrides=[override])
         [fault] = caught.value.faults
         assert override in fault.source
