@@ -6,14 +6,15 @@ import pandas as pd
 import pytest
 from hypothesis import given, strategies as st
 
-from evoframe.analysis.data.units import axis_title, factor_of, in_unit, with_unit
+from evoframe.analysis.data.units import axis_title, in_unit
+from evoframe.messages import quantity, unit_factor
 
 
 @given(st.floats(-1e6, 1e6))
 def test_a_value_is_shown_in_its_unit(value: float) -> None:
     for unit, shown in (("m", "mm"), ("kg", "kg"), ("", "")):
-        number, _, name = with_unit(value, unit).partition(" ")
-        assert float(number) == pytest.approx(value * factor_of(unit), rel=1e-3)
+        number, _, name = quantity(value, unit).partition(" ")
+        assert float(number) == pytest.approx(value * unit_factor(unit), rel=1e-3)
         assert name == shown
 
 

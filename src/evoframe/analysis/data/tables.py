@@ -10,11 +10,12 @@ import attrs
 import pandas as pd
 
 from evoframe.analysis.data.studies import YARDSTICKS, StudyData, View, Yardstick
-from evoframe.analysis.data.units import NAMES, axis_title, factor_of, in_unit
+from evoframe.analysis.data.units import NAMES, axis_title, in_unit
 from evoframe.analysis.output.latex import decimals, fixed, p_cell, quartiles_cell
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.analysis.statistics.groups import Comparison, Group, compare, ranked
 from evoframe.documents import leaves
+from evoframe.messages import unit_factor
 from evoframe.record import Verification
 
 __all__ = [
@@ -99,7 +100,7 @@ def summary_table(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
 
 def summary_article(found: Sequence[Compared], unit: str = "") -> pd.DataFrame:
     """Return the summary for an article: medians, quartiles and letters."""
-    factor = factor_of(unit)
+    factor = unit_factor(unit)
     groups = [group for each in found for group in each.groups]
     places = decimals(
         factor * (group.quartiles[1] - group.quartiles[0]) / math.sqrt(group.n) for group in groups

@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 import pandas as pd
 
 from evoframe.analysis.data.studies import Yardstick
+from evoframe.messages import unit_factor, unit_name
 
-__all__ = ["CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "factor_of", "in_unit", "with_unit"]
+__all__ = ["CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "in_unit"]
 
 NAMES: Mapping[Yardstick, str] = {"score": "best score", "fitness": "best fitness"}
 
@@ -21,26 +22,16 @@ CURVE_CAPTIONS: Mapping[Yardstick, str] = {
 }
 
 
-def factor_of(unit: str) -> float:
-    """Return the factor from *unit* to the unit of reports: meters become millimeters."""
-    return 1000.0 if unit == "m" else 1.0
-
-
 def axis_title(name: str, unit: str) -> str:
     """Return the title of an axis or column with its unit, as in ``best score (mm)``."""
-    shown = {"m": " (mm)", "": ""}.get(unit, f" ({unit})")
-    return f"{name}{shown}"
+    return f"{name} ({unit_name(unit)})" if unit else name
 
 
 def in_unit(table: pd.DataFrame, columns: Sequence[str], unit: str) -> pd.DataFrame:
     """Return a table whose *columns* are converted from *unit* to the unit of reports, which titles name."""
     shown = table.copy()
-    if unit == "m":
+    factor = unit_factor(unit)
+    if factor != 1.0:
         for column in columns:
-            shown[column] = [None if pd.isna(value) else value * 1000.0 for value in table[column]]
+            shown[column] = [None if pd.isna(value) else value * factor for value in table[column]]
     return shown.rename(columns={column: axis_title(column, unit) for column in columns})
-
-
-def with_unit(value: float, unit: str, digits: int = 4) -> str:
-    """Return a value with its unit, as in ``5.041 mm``."""
-    return f"{value * factor_of(unit):.{digits}g} {'mm' if unit == 'm' else unit}".rstrip()

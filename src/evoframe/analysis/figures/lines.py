@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import CURVE_NAMES, factor_of
+from evoframe.analysis.data.units import CURVE_NAMES
 from evoframe.analysis.statistics.groups import FEWEST
+from evoframe.messages import unit_factor
 from evoframe.record import Run
 from evoframe.study import score_curve
 
@@ -57,7 +58,7 @@ def lines_of_view(view: View, yardstick: Yardstick, unit: str = "") -> list[Line
     for number, (name, rows) in enumerate(view.groups.items()):
         found = [curve for row in rows if (curve := getattr(row, f"{yardstick}_curve"))]
         length = min(map(len, found), default=0)
-        curves = np.array([curve[:length] for curve in found], dtype=np.float64) * factor_of(unit)
+        curves = np.array([curve[:length] for curve in found], dtype=np.float64) * unit_factor(unit)
         if curves.size:
             band = _band(curves) if len(curves) >= FEWEST else None
             drawn.append(Line(f"{name}: {len(curves)}", curves.mean(axis=0), number, number, band))
@@ -71,7 +72,7 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
         run: The run, finished or not.
         unit: Unit of the values; meters become millimeters.
     """
-    turns, factor = run.turns(), factor_of(unit)
+    turns, factor = run.turns(), unit_factor(unit)
     populations = list(run.config["populations"])
     drawn = []
     for number, population in enumerate(populations):

@@ -15,12 +15,13 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import CURVE_NAMES, NAMES, axis_title, factor_of
+from evoframe.analysis.data.units import CURVE_NAMES, NAMES, axis_title
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, break_lines, row_height, text_width
 from evoframe.analysis.output.texts import counted
 from evoframe.analysis.statistics.groups import FEWEST, Comparison
+from evoframe.messages import unit_factor
 
 __all__ = ["curves", "curves_of", "draw_lines", "finals", "ranks"]
 
@@ -129,7 +130,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     figure, axes = _figure(view.title, 0.75 + height)
     rng = np.random.default_rng(0)  # only for the vertical positions of points
     for place, values in enumerate(groups.values()):
-        scaled = np.array(values) * factor_of(unit)
+        scaled = np.array(values) * unit_factor(unit)
         boxed = len(values) >= FEWEST
         beside = place - (0.2 if boxed else 0.0) + rng.uniform(-0.1, 0.1, len(values))
         colour = COLOURS[place % len(COLOURS)]

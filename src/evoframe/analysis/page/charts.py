@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from plotly.graph_objects import Box, Figure, Scatter
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import NAMES, axis_title, factor_of
+from evoframe.analysis.data.units import NAMES, axis_title
 from evoframe.analysis.figures.lines import Line
 from evoframe.analysis.statistics.groups import FEWEST
+from evoframe.messages import unit_factor
 
 __all__ = ["finals_chart", "lines_chart"]
 
@@ -83,7 +84,7 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
     """
     traces = []
     for number, (name, values) in enumerate(view.values(yardstick).items()):
-        scaled, called = np.array(values) * factor_of(unit), _wrapped(f"{name}: {len(values)}")
+        scaled, called = np.array(values) * unit_factor(unit), _wrapped(f"{name}: {len(values)}")
         if len(values) < FEWEST:
             points = {"mode": "markers", "marker_size": 6}
             trace = Scatter(x=[called] * len(values), y=_shortened(scaled), name=called, **points)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from evoframe.analysis.data.champions import ChampionData
 from evoframe.analysis.data.tables import verification_table
-from evoframe.analysis.data.units import with_unit
 from evoframe.analysis.figures.bodies import body
 from evoframe.analysis.figures.networks import TooLargeError, network
 from evoframe.analysis.output.writing import figure_files, table_files
 from evoframe.analysis.page.html import Block, Motion, Part, Picture, Section, Table, Words
+from evoframe.messages import quantity
 
 __all__ = ["champion_part"]
 
@@ -20,7 +20,7 @@ def champion_part(data: ChampionData, whose: str) -> Part:
         data: The champion.
         whose: Origin of the champion, as in ``the best pair of the run``.
     """
-    score, files = with_unit(data.score, data.unit), dict[str, bytes]()
+    score, files = quantity(data.score, data.unit), dict[str, bytes]()
     blocks: list[Block] = [Words(f"The champion, {whose}, scores {score}.")]
     if data.geometry is None:
         blocks.append(Words("Its simulator does not support geometries, so the body is not drawn."))

@@ -7,7 +7,7 @@ import pandas as pd
 from evoframe.analysis.data.champions import ChampionData, load_champion
 from evoframe.analysis.data.facts import facts_of
 from evoframe.analysis.data.tables import versions_table
-from evoframe.analysis.data.units import axis_title, in_unit, with_unit
+from evoframe.analysis.data.units import axis_title, in_unit
 from evoframe.analysis.figures.lines import lines_of_run
 from evoframe.analysis.figures.studies import draw_lines
 from evoframe.analysis.output.writing import figure_files, table_files
@@ -18,6 +18,7 @@ from evoframe.analysis.report.draft import Draft
 from evoframe.analysis.robustness.section import robustness_part
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.files import LARGEST_DOCUMENT, read_text, shown_name
+from evoframe.messages import quantity
 from evoframe.record import CONFIG_FILE, Run
 from evoframe.registry import Plugins
 
@@ -76,7 +77,7 @@ def draft_of_run(run: Run, plugins: Plugins, correction: Correction = "holm") ->
 
 
 def _lead(run: Run, champion: ChampionData) -> str:
-    work, score = run.workload(), with_unit(champion.score, champion.unit)
+    work, score = run.workload(), quantity(champion.score, champion.unit)
     pairs = sum(row["pairs"] for row in work)
     state = "finished" if run.finished() else "not finished"
     return f"best pair {score}; {len(work) - 1:,} turns, {pairs:,} pairs; {state}"

@@ -11,9 +11,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from evoframe.analysis.data.units import axis_title, factor_of
+from evoframe.analysis.data.units import axis_title
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, break_lines, row_height
+from evoframe.messages import unit_factor
 from evoframe.robustness import Robustness
 
 __all__ = ["violins"]
@@ -40,7 +41,7 @@ def violins(measured: Robustness) -> Figure:
     height = 0.75 + len(groups) * row_height(labels, _ROW)
     figure = Figure(figsize=(COLUMN, height), layout="constrained")
     axes = figure.add_subplot()
-    factor = factor_of(measured.setting.unit)
+    factor = unit_factor(measured.setting.unit)
     for place, columns in enumerate(groups.values()):
         colour = COLOURS[place] if len(groups) <= len(COLOURS) else COLOURS[0]
         _violin(axes, place, measured.values(columns) * factor, colour)

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from evoframe.analysis.data.units import axis_title, factor_of
+from evoframe.analysis.data.units import axis_title
 from evoframe.analysis.output.latex import decimals, fixed, p_cell, quartiles_cell
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics.blocks import BlockComparison
 from evoframe.analysis.statistics.groups import Comparison
 from evoframe.analysis.statistics.pairs import Pair
+from evoframe.messages import unit_factor
 from evoframe.robustness import Robustness
 
 __all__ = [
@@ -158,7 +159,7 @@ def ranking_article(found: Findings) -> pd.DataFrame:
 def _article(table: pd.DataFrame, names: list[str], more: list[str], measured: Robustness) -> pd.DataFrame:
     """Return *names*, medians, quartiles and *more* of a table, rounded by their standard error."""
     unit = measured.setting.unit
-    factor = factor_of(unit)
+    factor = unit_factor(unit)
     spread = table[["median", "first quartile", "third quartile"]].astype(float) * factor
     error = (spread["third quartile"] - spread["first quartile"]) / math.sqrt(measured.setting.controllers)
     places = decimals(error)

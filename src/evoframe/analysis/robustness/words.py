@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from evoframe.analysis.data.units import with_unit
 from evoframe.analysis.output.texts import written
 from evoframe.analysis.robustness.findings import Findings
 from evoframe.analysis.statistics.blocks import BlockPair
 from evoframe.analysis.statistics.groups import FEWEST, Comparison
 from evoframe.analysis.statistics.pairs import orient
 from evoframe.analysis.statistics.words import conclusion
+from evoframe.messages import quantity
 
 __all__ = ["conclusions"]
 
@@ -46,7 +46,7 @@ def conclusions(found: Findings) -> str:
         within=within,
         different=[*map(orient, different)],
         closest=closest,
-        gap=with_unit(gap, unit, digits=3),
+        gap=quantity(gap, unit, digits=3),
         by_body=by_body,
         conclusion_by_body=conclusion(by_body, "the median of a body", _BODIES) if by_body else "",
         alone=[name for name, columns in groups.items() if len(columns) == 1],
