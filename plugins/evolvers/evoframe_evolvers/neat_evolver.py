@@ -49,8 +49,8 @@ class Neat(GenomeOptions):
         compatibility_threshold: A genome belongs to a species if its genetic distance to the species'
             representative is less than this (paper).
         compatibility_disjoint: Weight in the genetic distance of each gene that only one genome has (paper).
-        compatibility_weight: Weight in the genetic distance of the differences between genes that both genomes
-            have: in weight and bias, and 1 for a different activation or enabled state (paper).
+        compatibility_weight: Weight in the genetic distance of the differences between genes that both
+            genomes have: in weight and bias, and 1 for a different activation or enabled state (paper).
         max_stagnation: Generations without improvement after which a species goes extinct (paper).
         species_elitism: Number of the best species that cannot go extinct (authors' configuration).
         species_fitness: Fitness of a species: the ``max``, ``mean``, ``min`` or ``median`` of its members
