@@ -170,7 +170,7 @@ class Coevolution:
     def _complete_turn(
         self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float
     ) -> Turn:
-        """Score the *meetings* of a turn, which are unique, and set the fitness of the *judged* populations."""
+        """Score the unique *meetings* of a turn, and set the fitness of the *judged* populations."""
         simulated = self.evaluator.simulations
         scores = self._scores(meetings)
         for index in judged:

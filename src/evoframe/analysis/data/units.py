@@ -33,7 +33,7 @@ def axis_title(name: str, unit: str) -> str:
 
 
 def in_unit(table: pd.DataFrame, columns: Sequence[str], unit: str) -> pd.DataFrame:
-    """Return a table whose *columns* are converted from *unit* to the unit of reports, which titles name."""
+    """Return a table with *columns* converted from *unit* to the unit of reports, stated in their titles."""
     shown = table.copy()
     if unit == "m":
         for column in columns:
