@@ -1,9 +1,9 @@
-"""Bending of the bar of the preset ``bending``, and the ratio of its drive to its first bending mode.
+"""Bending of the bar of the preset ``bending``, and the ratio of its drive frequency to its first mode.
 
-Measures the first bending mode of the bar (solid, and its enclosure only) from its swing under a small sudden
-weight, and the displacement of a bimorph of the preset, whose upper half contracts while its lower half
-expands. Then it measures the displacement for other drive frequencies and dampings; those of the preset were
-chosen from these figures.
+Measures the first bending mode of the bar (solid, and enclosure only) from its oscillation under a small,
+suddenly applied weight, and the displacement of a bimorph of the preset, whose upper half contracts while its
+lower half expands. Then it measures the displacement for other drive frequencies and dampings; those of the
+preset were chosen from these figures.
 
     python -m benchmarks.bending
 """
@@ -43,7 +43,7 @@ def bimorph(canvas: Sequence[int]) -> Design:
 
 
 def first_mode(vox: Any, body: NDArray[np.uint8]) -> float:
-    """Return the frequency, Hz, at which a bar swings around its equilibrium under a small weight."""
+    """Return the frequency, Hz, at which a bar oscillates around its equilibrium under a small weight."""
     wave_speed = math.sqrt(vox.youngs_modulus / vox.density)
     slender = 0.1615 * body.shape[2] / (body.shape[0] - 0.5) ** 2 * wave_speed / vox.voxel_size
     swinging = attrs.evolve(

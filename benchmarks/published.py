@@ -25,7 +25,7 @@ WITHIN = {
     "7": ("WM > AM", "AM = GM", "GM = HM"),
     "10": ("WM > HM", "HM > AM", "AM > GM"),
 }
-"""Number of collaborators -> the published ranking, as comparisons of neighbours."""
+"""Number of collaborators -> the published ranking, as comparisons of neighbors."""
 OVERALL = ("WM(2) > WM(3)", "WM(3) = WM(10)", "WM(10) > AM(5)", "AM(5) = WM(7)")
 
 BEYOND = 0.006  # m; greater scores are above the plateau

@@ -33,7 +33,7 @@ class Stages:
     Attributes:
         cpu: Stage -> CPU time, s.
         calls: Stage -> number of calls.
-        spans: Stage -> begin and end of each call, s of wall clock.
+        spans: Stage -> start and end of each call, s of wall clock.
     """
 
     cpu: defaultdict[str, float] = attrs.field(factory=lambda: defaultdict(float))

@@ -123,7 +123,7 @@ def _networks(role: str, count: int) -> list[Network]:
 
 
 def bonds_of(design: Design) -> int:
-    """Return the number of pairs of voxels of a body that are joined face to face."""
+    """Return the number of bonds of a body: pairs of voxels that share a face."""
     there = design.roles[MORPHOLOGY] != 0
     pairs = ((there[1:], there[:-1]), (there[:, 1:], there[:, :-1]), (there[..., 1:], there[..., :-1]))
     return sum(int((lower & upper).sum()) for lower, upper in pairs)

@@ -39,7 +39,7 @@ class Work:
 # Counted in libvox/kernels/vector_bonds.h and vector_motion.h, function by function; there is one coupling.
 _MATRIX = Work(29)  # matrix_of: 10 products, 7 sums for the diagonal, 6 sums and 6 doublings beside it
 _TURN = Work(15)  # turn, turn_back
-_CHORD = Work(10)  # arc_ratio: 8 of the power series, a difference before and a doubling after
+_CHORD = Work(10)  # arc_ratio: 8 of the power series, with a difference before and a doubling after
 _ARC = Work(34, divisions=1, roots=2)  # arc_ratio of a bond that is turned far, in addition to the chord
 
 _LOOK = Work(3 + 28 + 2 + 1 + 8) + _TURN  # apart, quaternion product, rest, aside, limits; to the frame
@@ -66,12 +66,12 @@ VOXEL = _MATRIX + _ADD + _MOVE + _ROTATE + _SIZE
 """Work of a voxel's step: its frame and the sum of its forces as a lower end, and its motion."""
 
 # Minimum number of doubles read and written in a step: each array once for all bonds, once for the motion.
-# there, small and the eight of the last deformation; all but `there` are also written
-_BOND_DOUBLES = (10 + 9) * 3  # a voxel: bonds along three axes
+# A bond reads `there`, `small` and the eight of the last deformation, and writes all of them but `there`.
+_BOND_DOUBLES = (10 + 9) * 3  # per voxel, which has bonds along three axes
 _END_DOUBLES = 8 + 6 + 6  # position, orientation, size; force and torque, read and written
 _MOTION_DOUBLES = 32 + 20  # of move_tile, turn_tile and size_tile: read, written
 VOXEL_BYTES = 8 * (_BOND_DOUBLES + _END_DOUBLES + _MOTION_DOUBLES)
-"""Traffic of a voxel's step, with its bonds."""
+"""Memory traffic of a step of a voxel with its bonds, bytes."""
 
 ARRAYS = 3 * 10 + 32
 """Number of arrays of doubles that the kernels use for a body."""

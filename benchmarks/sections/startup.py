@@ -21,7 +21,7 @@ _COMMANDS = {
 
 
 def startup(effort: Effort) -> Section:
-    """Time the calls that load no command, and a program that only imports the same libraries."""
+    """Time the calls that load no command, and a program that only imports their libraries."""
     actions: dict[str, Action] = {
         name: functools.partial(_run, arguments) for name, arguments in _COMMANDS.items()
     }

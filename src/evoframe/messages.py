@@ -44,16 +44,16 @@ def cause_of(error: BaseException) -> str:
 
 
 def unit_factor(unit: str) -> float:
-    """Return the factor from values in *unit* to values that people read: meters become millimeters."""
+    """Return the factor from values in *unit* to displayed values: meters are displayed as millimeters."""
     return 1000.0 if unit == "m" else 1.0
 
 
 def unit_name(unit: str) -> str:
-    """Return the name of the unit that people read for values in *unit*."""
+    """Return the unit in which values in *unit* are displayed."""
     return "mm" if unit == "m" else unit
 
 
 def quantity(value: float, unit: str, digits: int = 4) -> str:
-    """Return a value in *unit* as people read it, with significant *digits*: ``3.781 mm`` for 0.0037813 m."""
+    """Return a value in *unit* as displayed, with significant *digits*: ``3.781 mm`` for 0.0037813 m."""
     number = f"{value * unit_factor(unit):z.{digits}g}"  # z: no negative zero
     return f"{number} {unit_name(unit)}".rstrip()

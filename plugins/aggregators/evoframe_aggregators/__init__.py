@@ -1,6 +1,6 @@
 """The four averages of the paper: ``am``, ``wm``, ``gm``, ``hm``.
 
-All of them sort the scores first, so that the result does not depend on their order, to the last bit.
+All of them sort the scores first, so the result does not depend on their order, to the last bit.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class WeightedMean:
     Attributes:
         weights: One non-negative weight for each collaborator, the largest score's first; their sum is 1.
         fold: Also accept 4, 6 and 20 collaborators, by the rule in the authors' code: adjacent sorted scores
-            are averaged in twos, and the 2, 3 or 10 averages are weighted by the paper's table.
+            are averaged two by two, and the 2, 3 or 10 averages are weighted by the paper's table.
     """
 
     weights: tuple[float, ...] | None = attrs.field(default=None, validator=validators.optional(_sum_to_one))

@@ -20,7 +20,7 @@ _LARGEST_OFFSET = 2.0 * math.pi
 
 @lru_cache(maxsize=8)
 def _points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
-    """Return the network's inputs for each voxel, all as contractile ones, ``float64[X * Y * Z, 4]``."""
+    """Return the network's inputs for each voxel as if it were contractile, ``float64[X * Y * Z, 4]``."""
     points = voxel_points(canvas, normalized).reshape(-1, 3)
     return np.concatenate([points, np.full((len(points), 1), float(CONTRACTILE))], axis=1)
 
@@ -29,9 +29,9 @@ def _points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
 class CppnController:
     """Phase offsets from a network that is evaluated at each contractile voxel of a body.
 
-    The network's inputs are the coordinates and the material code of a voxel; its output is clamped to
-    +-2 pi. Empty and passive voxels do not contract, so the network is not evaluated there and their offset
-    is 0. This does not affect simulations, but the material code is always 3.
+    The network's inputs are the coordinates and the material code of a voxel, which is 3 for all contractile
+    voxels; its output is clamped to +-2 pi. Empty and passive voxels have the offset 0, which does not affect
+    simulations, since they do not contract.
 
     Attributes:
         normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; in the paper, the inputs

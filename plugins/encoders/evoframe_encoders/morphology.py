@@ -45,19 +45,19 @@ class CppnMorphology:
     """A body from a network that gives the presence and material of each voxel.
 
     A voxel is present if the absolute value of the first output reaches *threshold*; a present voxel is
-    contractile if the absolute value of the second output does, else passive. With *enclosure*, the outermost
-    layer of the canvas is always passive, so that the free end exists and the body is never empty. Without
-    *enclosure*, a body can be empty, and can consist of several parts unless *connected* is set.
+    contractile if that of the second output reaches it too, and otherwise passive. With *enclosure*, the
+    outermost layer of the canvas is always passive, so the free end exists and the body is never empty.
+    Without *enclosure*, a body can be empty, and can consist of several parts unless *connected* is set.
 
     Attributes:
         canvas: Number of voxels along x, y and z.
         enclosure: Whether the outermost layer is passive, and the network determines the interior only
             (paper).
-        threshold: Threshold of the absolute outputs, dimensionless (paper).
+        threshold: Threshold for the absolute values of the outputs, dimensionless (paper).
         normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; in the paper, the inputs
             are voxel indices.
-        connected: Whether to keep only the largest part of voxels that are connected face to face; among
-            equally large parts, the first one along x, then y, then z.
+        connected: Whether to keep only the largest part whose voxels are connected face to face; of equally
+            large parts, the first one along x, then y, then z.
     """
 
     canvas: Canvas = attrs.field(default=(20, 8, 8), validator=_possible_canvas)

@@ -46,12 +46,12 @@ class Neat(GenomeOptions):
     *species_elitism* = 0, the population is initialized again.
 
     Attributes:
-        compatibility_threshold: Genetic distance from which two genomes belong to different species (paper).
-        compatibility_disjoint: Contribution to the distance of a gene that only one of two genomes has
-            (paper).
-        compatibility_weight: Contribution of a difference of 1 in a weight, bias or activation (paper).
-        max_stagnation: Generations without improvement of its fitness after which a species goes extinct
-            (paper).
+        compatibility_threshold: A genome belongs to a species if its genetic distance to the species'
+            representative is less than this (paper).
+        compatibility_disjoint: Weight in the genetic distance of each gene that only one genome has (paper).
+        compatibility_weight: Weight in the genetic distance of the differences between genes that both
+            genomes have: in weight and bias, and 1 for a different activation or enabled state (paper).
+        max_stagnation: Generations without improvement after which a species goes extinct (paper).
         species_elitism: Number of the best species that cannot go extinct (authors' configuration).
         species_fitness: Fitness of a species: the ``max``, ``mean``, ``min`` or ``median`` of its members
             (authors' configuration).
@@ -183,7 +183,7 @@ class NeatRun(NetworkRun):
         }
 
     def restore(self, state: Any) -> None:
-        """Continue from what :meth:`state` returned.
+        """Continue from the result of :meth:`state`.
 
         Raises:
             ValueError: *state* is not the state of a population of this kind; this run is unchanged.

@@ -32,7 +32,7 @@ class RandomSearch(GenomeOptions):
     uniformly from 0 to *mutations*. See :class:`GenomeOptions` for initialization and mutation.
 
     Attributes:
-        mutations: Maximum number of mutations of a genome; with 0, every turn is like the first turn of NEAT.
+        mutations: Maximum number of mutations of a genome; with 0, every turn is like NEAT's initial turn.
     """
 
     mutations: int = at_least(0, 0)
@@ -90,7 +90,7 @@ class RandomSearchRun(NetworkRun):
         }
 
     def restore(self, state: Any) -> None:
-        """Continue from what :meth:`state` returned.
+        """Continue from the result of :meth:`state`.
 
         Raises:
             ValueError: *state* is not the state of a population of this kind; this run is unchanged.

@@ -34,8 +34,9 @@ class Processes:
 
     Attributes:
         workers: Number of processes, at most 1024; 0 uses one for each core available to this process.
-        batch_time_limit: Seconds after which a worker that is still busy with a batch is terminated. A
-            worker's first batch includes the import of the simulator; choose a much larger limit than that.
+        batch_time_limit: Time after which a worker that is still busy with a batch is terminated, s; no limit
+            by default. A worker's first batch includes the import of the simulator, so choose a much larger
+            limit than that takes.
     """
 
     workers: int = worker_count()
@@ -48,7 +49,7 @@ class Processes:
 
 @attrs.frozen(eq=False)
 class _Task(Generic[T]):
-    """An item, the parcel with it and its function, and the future answer."""
+    """An item, the parcel that contains the item and the function, and the future answer."""
 
     item: T
     parcel: bytes

@@ -17,7 +17,7 @@ R = TypeVar("R")
 
 @attrs.frozen
 class Serial:
-    """One item after the other, in the calling thread."""
+    """No parallelism: the calling thread processes one item after the other."""
 
     def start(self) -> ExecutorRun:
         """Return the single worker."""

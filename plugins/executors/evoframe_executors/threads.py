@@ -28,14 +28,14 @@ R = TypeVar("R")
 class Threads:
     """Threads of this process; they run in parallel if the simulator releases the GIL, as ``vox`` does.
 
-    Threads cannot be terminated. If one exceeds the time limit, the run stops and abandons it; a thread that
-    never releases the GIL even prevents this check. The executor ``processes`` can terminate its workers in
-    both cases.
+    Threads cannot be terminated. If one exceeds the time limit, the run stops and abandons it; if one never
+    releases the GIL, the time limit has no effect. The executor ``processes`` terminates its workers in both
+    cases.
 
     Attributes:
         workers: Number of threads, at most 1024; 0 uses one for each core available to this process.
-        batch_time_limit: Seconds after which an unfinished batch of simulations counts as lost and the run
-            stops. Choose a much larger limit than a batch needs on a busy computer.
+        batch_time_limit: Time after which an unfinished batch counts as lost and the run stops, s; no limit
+            by default. Choose a much larger limit than a batch takes on a busy computer.
     """
 
     workers: int = worker_count()

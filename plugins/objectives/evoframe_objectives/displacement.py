@@ -17,13 +17,13 @@ __all__ = ["FaceYz", "TipDz", "TipYz"]
 
 @attrs.frozen
 class _Displacement:
-    """Base of the displacements: a track, and the two samples between which it is measured.
+    """Base class of the displacements, each measured between two samples of a track.
 
     The paper's engine samples after the first step and then at least 0.01 s apart; the paper's displacement
     is measured from sample 0 (t = 0.0032 s) to sample 5 (t = 0.0673 s).
 
     Attributes:
-        every: Minimum seconds between samples; 0 samples after every step.
+        every: Minimum time between samples, s; 0: a sample after every step.
         first: Index of the sample at which the displacement starts.
         last: Index of the sample at which the displacement ends.
     """

@@ -18,11 +18,11 @@ _ROUNDING = 1e-12  # relative; so that a sample taken at objective.after counts 
 
 @attrs.frozen
 class _Settled:
-    """Base of the objectives over a whole simulation.
+    """Base class of the objectives over a whole simulation.
 
     Attributes:
-        every: Minimum seconds between samples; 0 samples after every step.
-        after: Seconds for the body to settle; samples before this time do not count.
+        every: Minimum time between samples, s; 0: a sample after every step.
+        after: Time for the body to settle, s; samples before this time do not count.
     """
 
     unit: ClassVar[str] = "m"
@@ -79,8 +79,8 @@ class Travel(_Settled):
 class FacePeak(_Settled):
     """Largest distance of the center of the free face from its rest position in the yz plane, in meters.
 
-    It is the maximum over all samples that count, and never negative (docs/experiment.md, the preset
-    ``bending``).
+    The score is the maximum over all samples that count, and never negative; the preset ``bending`` uses it
+    (docs/experiment.md).
     """
 
     @property

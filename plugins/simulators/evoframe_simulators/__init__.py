@@ -1,4 +1,4 @@
-"""Built-in simulators: currently ``vox``, voxel actuators on libvox.
+"""Built-in simulators: currently ``vox``, which simulates voxel bodies with libvox.
 
 Each simulator has its own package. :mod:`.files` and :mod:`.npz`, which read untrusted files, are shared.
 """
@@ -13,5 +13,5 @@ __all__ = ["FixedRegion", "PaletteMaterial", "Vox", "VoxSettings", "evoframe_sim
 
 @hookimpl
 def evoframe_simulators() -> Mapping[str, type[Simulator]]:
-    """Offer ``vox``."""
+    """Register the simulator ``vox``."""
     return {"vox": Vox}

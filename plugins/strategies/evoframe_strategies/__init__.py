@@ -1,6 +1,6 @@
 """The four collaboration strategies: ``fittest``, ``worst``, ``best-and-worst``, ``random``.
 
-A member with a diverged simulation is chosen only if no clean member is left.
+A member with a diverged simulation is chosen only if no other member is left.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ class _Common:
 
     Attributes:
         modules: Local plugins.
-        verbosity: Number of ``-v``; below 0: requested output and errors only.
+        verbosity: Number of ``-v``; below 0: only the requested output and errors.
         plugins: The plugins, discovered on first use.
     """
 
@@ -127,7 +127,7 @@ def messages() -> Console:
 
 
 def scored(score: float | None, unit: str) -> str:
-    """Return a score with its *unit* as people read it."""
+    """Return a score with its *unit*, as displayed."""
     return "diverged" if score is None else quantity(score, unit)
 
 

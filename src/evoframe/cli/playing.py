@@ -1,4 +1,4 @@
-"""Play of a run for `run` and `resume`: progress, results, verification, and stopping on demand."""
+"""Execution of a run by ``run`` and ``resume``: progress, results, verification, and stop on a signal."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["play", "show_end"]
 
 
 def play(ctx: click.Context, execution: Execution) -> None:
-    """Play a run to its end and print its results, or stop on a signal."""
+    """Execute a run to its end and print its results, or stop on a signal."""
     if not is_quiet(ctx):
         execution.plugins.manager.register(Progress(), name="evoframe:progress")
     run: Run | None = None

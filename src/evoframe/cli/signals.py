@@ -1,4 +1,4 @@
-"""Stop on Ctrl-C or SIGTERM: the first signal stops soon, a second one at once."""
+"""Stop on Ctrl-C or SIGTERM: the first signal requests a stop, a second one stops at once."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class _State:
 
 
 class _Work:
-    """Amount of work in pairs, which take nearly all the time: total, and done in this session.
+    """Work of a study, in pairs, which take nearly all of the time: done in this session, and left.
 
     Args:
         todo: The runs to start or resume.
@@ -77,7 +77,7 @@ class _Work:
         self._left[planned] = left
 
     def ended(self, planned: Planned, *, finished: bool) -> None:
-        """Count the end of a run: if it is finished and was seen running, its remaining pairs are done."""
+        """Count the end of a run; the remaining pairs of a finished run that was seen running are done."""
         left = self._left.pop(planned)
         if finished and planned in self._seen:
             self.done += left
@@ -90,7 +90,7 @@ class _Work:
         return [f"{self.done / elapsed:,.0f} pairs/s", f"{left} left"]
 
     def bar(self) -> ProgressBar:
-        """Return a bar of the work done, whether in this session or before."""
+        """Return a bar of the work done, in this session and before it."""
         return ProgressBar(total=self._whole or 1, completed=self._whole - self.left)
 
 
@@ -120,7 +120,7 @@ class StudyProgress(Watcher):
             self._live.stop()
 
     def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
-        """Count the finished runs, and start."""
+        """Count the finished runs, and start the display."""
         self._headings, self._work = study.headings, _Work(todo)
         for planned in (*done, *todo):
             self._cells.setdefault(planned.cell, _State(0)).total += 1
@@ -197,7 +197,7 @@ def table_of_cells(headings: Sequence[str], figures: Sequence[str]) -> Table:
 
 
 def duration(seconds: float) -> str:
-    """Return a duration as people read it: ``40 s``, ``12 min``, ``3 h 20 min``."""
+    """Return a duration as displayed: ``40 s``, ``12 min``, ``3 h 20 min``."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60)

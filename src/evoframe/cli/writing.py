@@ -1,4 +1,4 @@
-"""Files that a command writes where the user says."""
+"""Writing of a command's output to a path given by the user."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def write_file(path: Path, data: bytes, *, force: bool) -> None:
         if path == STDOUT:
             click.echo(data, nl=False)
         elif path.exists() and not path.is_file():
-            path.write_bytes(data)  # a device or a pipe; a directory refuses
+            path.write_bytes(data)  # a device or a pipe; fails for a directory
         elif not path.exists() or path.read_bytes() != data:
             if path.exists() and not force:
                 raise InputError(

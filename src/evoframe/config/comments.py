@@ -31,10 +31,10 @@ def commented(config: RunConfig) -> str:
 
 
 def starter(config: RunConfig, base: str) -> str:
-    """Return a file to start from: every option of *config*, commented out so that those of *base* are used.
+    """Return a starting configuration that extends *base*, with every option of *config* commented out.
 
     Args:
-        config: The configuration that *base* stands for.
+        config: The resolved configuration of *base*.
         base: The preset that the file extends.
     """
     head = [
@@ -60,7 +60,7 @@ def _sections(config: RunConfig, *, active: bool) -> Iterator[str]:
 
 
 def _section(path: str, table: Tree, class_: type, *, active: bool) -> Iterator[str]:
-    """Yield the lines of a table and of its nested tables, apart from components."""
+    """Yield the lines of a table and of its nested tables, but not of components."""
     yield ""
     if "name" in table:
         yield from _comment(summary_of(class_))

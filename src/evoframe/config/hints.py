@@ -1,4 +1,4 @@
-"""Hints for unknown keys, from all keys that a configuration has."""
+"""Hints for unknown keys, chosen from all keys that a configuration can have."""
 
 from __future__ import annotations
 

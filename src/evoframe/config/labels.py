@@ -1,4 +1,4 @@
-"""Short names of configurations, from their base and the settings on top of it."""
+"""Short names of configurations, from their base and its overrides."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _WITHOUT_EFFECT = ("executor", "plugins")  # on the result
 
 
 def label_of(source: str | Path, overrides: Iterable[Layer]) -> str:
-    """Return a name for a configuration that tells it apart from others: ``paper-hm-n5``.
+    """Return a short name that distinguishes a configuration from others, such as ``paper-hm-n5``.
 
     Args:
         source: Name of a preset, or path of a TOML file.
-        overrides: Settings on top of it; components add their name, options their key and value.
+        overrides: Settings that override it; components add their name, options their key and value.
     """
     parts: dict[str, str] = {}  # the last setting of a key wins, as in the configuration
     for layer in overrides:

@@ -37,7 +37,7 @@ class Layer:
     """One source of settings.
 
     Attributes:
-        origin: The source as errors name it: a file's name, ``preset 'paper'``, ``--set run.seed=2``.
+        origin: Name of the source in errors, such as a file name, ``preset 'paper'`` or ``--set run.seed=2``.
         tree: The tables; components are tables with ``name``.
     """
 
@@ -80,7 +80,7 @@ class Layers:
         return attrs.evolve(self, layers=tuple(kept))
 
     def origin(self, *paths: tuple[str, ...]) -> str:
-        """Return the origin of the value at the latest of *paths*, or of the nearest table around it."""
+        """Return the origin of the latest value at *paths*; a missing value counts as its nearest table."""
         return self.layers[max(map(self._level, paths))].origin
 
     def _level(self, path: tuple[str, ...]) -> int:
@@ -101,7 +101,7 @@ def preset_names() -> list[str]:
 
 
 def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> Layers:
-    """Read a preset or file and the ones that it extends, and put the *overrides* on top.
+    """Read a preset or file and the ones that it extends, and add the *overrides*.
 
     Args:
         source: Name of a preset, or path of a TOML file.
@@ -115,11 +115,11 @@ def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> La
 
 
 def layers_in(tables: Mapping[str, Any], origin: str) -> Layers:
-    """Return the settings of a complete configuration that was already read.
+    """Return the layers for the tables of a complete configuration.
 
     Args:
         tables: Tables of a run's ``config.toml``.
-        origin: Source of the tables, as errors name it.
+        origin: Name of the source in errors.
     """
     own = {key: value for key, value in tables.items() if key not in ("extends", "provenance")}
     return Layers((), _local_plugins(tables)).under([Layer(origin, own)])

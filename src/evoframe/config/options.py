@@ -59,7 +59,7 @@ def options_of(class_: type) -> dict[str, Option]:
 
 
 def summary_of(class_: type) -> str:
-    """Return the first sentence of a class's docstring; empty if it has none."""
+    """Return the first line of a class's docstring; empty if it has none."""
     return _flat(docstring_parser.parse(class_.__doc__ or "", _GOOGLE).short_description)
 
 
@@ -67,7 +67,7 @@ _GOOGLE = docstring_parser.DocstringStyle.GOOGLE
 
 
 def _meanings(class_: type) -> dict[str, str]:
-    """Return the descriptions of attributes, those of base classes included."""
+    """Return the descriptions of the attributes of a class and of its base classes."""
     found: dict[str, str] = {}
     for base in reversed(class_.__mro__):
         for parameter in docstring_parser.parse(base.__doc__ or "", _GOOGLE).params:

@@ -45,7 +45,7 @@ def load_config(
 
     Args:
         source: Name of a preset, or path of a TOML file.
-        overrides: Settings on top of that; the last one wins: ``key=value`` with a dotted key and a TOML
+        overrides: Settings that override it; the last one wins: ``key=value`` with a dotted key and a TOML
             value, as for ``--set``, or layers of tables.
         plugins: The plugins to choose from; by default the installed ones.
 
@@ -61,7 +61,7 @@ def load_config(
 
 
 def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
-    """Resolve and check a configuration that was read.
+    """Resolve and check layers of settings.
 
     Args:
         layers: The settings.
@@ -91,8 +91,8 @@ def named_simulator(
 ) -> Chosen[Simulator] | None:
     """Return the simulator that a configuration names, for reading the settings that a file contains.
 
-    Overrides of its options are ignored if the preset alone gives a valid simulator: they may be valid only
-    together with the settings of the file.
+    If the preset alone gives a valid simulator, overrides of its options are ignored, since they may be valid
+    only together with the settings of the file.
 
     Args:
         source: Name of a preset, or path of a TOML file.

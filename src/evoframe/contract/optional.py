@@ -108,8 +108,8 @@ class Variant:
         design: Design to simulate.
         record: Samples to record: as many of the same tracks as in the unchanged simulation, so that the same
             objective can score them.
-        kept: What it means that the variant keeps the score, as a clause about the score; may be empty.
-        lost: What it means that the variant loses the score, likewise.
+        kept: Interpretation if the variant keeps the score, as a clause about the score; may be empty.
+        lost: Interpretation if the variant loses the score, as a clause likewise.
     """
 
     name: str

@@ -190,7 +190,7 @@ class Simulator(Protocol):
         """Names of the points that it can track; it may accept, and document, tracks of other shapes."""
 
     def check(self, record: Record) -> None:
-        """Refuse a *record* that the simulation cannot provide.
+        """Refuse a *record* that simulations cannot provide.
 
         Raises:
             ConfigurationError: A track is unknown, a sample is after the end, or the end is before
@@ -223,7 +223,7 @@ class Objective(Protocol):
 
 @runtime_checkable
 class ExecutorRun(Protocol):
-    """Workers that are ready.
+    """Started workers, which process items.
 
     Laws: results are in the order of the items, whatever the number of workers; the iterable is consumed
     once, in the thread that calls :meth:`map`, possibly while earlier items are processed.
@@ -234,7 +234,7 @@ class ExecutorRun(Protocol):
         """Number of items processed in parallel."""
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> list[R]:
-        """Return ``[function(item) for item in items]``; exceptions of both are raised here.
+        """Return ``[function(item) for item in items]``; exceptions from either propagate.
 
         Raises:
             WorkerError: The worker of an item was lost: it hung, or its process ended.

@@ -75,7 +75,7 @@ class Record:
     Attributes:
         tracks: Names of the tracks. Each point in a simulator's ``tracks`` gives ``float64[samples, 3]`` in
             meters; other tracks that it accepts have the shapes that it documents.
-        every: Time between samples, s; 0 samples after every step.
+        every: Minimum time between samples, s; 0: a sample after every step.
         samples: Indices of the samples to keep, ascending; ``None`` keeps all.
         initial: Whether the state before the first step is recorded as an additional first row.
         until: Time that the simulation must reach, s: a simulator refuses a record whose last sample would be
@@ -200,8 +200,9 @@ class PopulationReport:
         members: All members, with the fitness of this turn.
         best: Best fitness of this turn.
         best_so_far: Best fitness of this turn and all earlier turns.
-        standing_champion: Fitness of the standing champion at its latest evaluation. It can fall when the
-            champion meets new collaborators, and stays constant after the champion has left the population.
+        standing_champion: Fitness, at its latest evaluation, of the individual that a fitter one has not yet
+            replaced. It can fall when the individual is paired with new collaborators, and is constant
+            after it has left the population.
         mean: Mean fitness of this turn.
     """
 
@@ -216,7 +217,7 @@ class PopulationReport:
 
 @attrs.frozen
 class Workload:
-    """The workload of a turn, which may differ between equal runs and is not part of their result.
+    """The workload of a turn; it is not part of the result, and may differ between runs with equal results.
 
     Attributes:
         pairs: Number of scored pairs.
@@ -234,9 +235,10 @@ class Turn:
     """One turn of a run.
 
     Attributes:
-        index: 0 for the initial turn, in which every individual meets every other, then 1, 2, ...
-        reports: One for each evaluated population: all in turn 0, then one per turn; none in the final turn
-            that pairs the fittest, if there is one.
+        index: 0 for the initial turn, in which every individual is paired with every individual of the other
+            populations; then 1, 2, ...
+        reports: One for each evaluated population: all in turn 0, then one per turn; none in the turn of the
+            final pair, if there is one.
         pairs: All scored pairs, in the order of evaluation.
         best_pair: The best pair so far, if it was found in this turn.
         workload: Pairs, simulations and time of the turn.

@@ -89,7 +89,7 @@ def read_job(
 
 @contextlib.contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Make *path* the source of errors of a component, which knows only the content of the file."""
+    """Name *path* as the source of errors raised by a component that knows only the content of the file."""
     try:
         yield
     except (ConfigurationError, InputError) as error:

@@ -14,8 +14,8 @@ _LOST = 0.5
 def verdict(verification: Verification, config: RunConfig, design: Design) -> str:
     """Return what the findings mean for the score, in the words of the simulator.
 
-    A variant that keeps at least 90 % of the score or leaves at most 50 % contributes its own clause, any
-    other variant its share.
+    A variant that keeps at least 90 % or at most 50 % of the score contributes its clause; any other variant
+    contributes its name. Both are followed by the share of the score that is left.
 
     Args:
         verification: The verification of *design*.

@@ -40,7 +40,7 @@ def verify(
 
     Args:
         source: A run or its directory, for its champion; or a file with designs.
-        preset: The preset for settings that the file lacks; for a champion, it replaces those of the run.
+        preset: The preset for settings that the file lacks; for a champion, it replaces the run's settings.
         workers: Overrides ``executor.workers``.
         plugins: The available plugins; by default all installed plugins.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
@@ -123,7 +123,7 @@ def verify_design(
         simulator: The simulator, which offers the variants.
         objective: Scores all simulations.
         design: The design to verify.
-        workers: Simulate in parallel; the result does not depend on their number.
+        workers: Started workers; the result does not depend on their number.
         score: Its score in the run, if the design is a champion.
 
     Raises:

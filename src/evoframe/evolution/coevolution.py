@@ -42,13 +42,13 @@ Fold: TypeAlias = Callable[[Scores], float]
 
 @attrs.define
 class Coevolution:
-    """The loop of a run: iterating over it runs it, without input or output.
+    """The loop of a run; iterating over it executes the turns, without input or output.
 
     In the initial turn, every individual is paired with every individual of the other populations; its
     fitness is the arithmetic mean of its scores. In each following turn, one population reproduces and all
     its members are evaluated with collaborators from the other populations, whose fitness does not change
     (docs/experiment.md, "The loop"). If the fittest individuals of all populations were not paired in the
-    last turn, a final turn pairs them, without changing any fitness.
+    last turn, the final pair is scored in a turn of its own, without changing any fitness.
 
     Collaborators from several other populations are combined by position: the i-th of each.
 
@@ -82,7 +82,7 @@ class Coevolution:
         return self.turn >= self.length and self._fittest_have_met
 
     def __iter__(self) -> Iterator[Turn]:
-        """Yield the initial turn, then the turns of the populations, then the final turn if required."""
+        """Yield the initial turn, the turns of the populations, and if required that of the final pair."""
         if self.turn < 0:
             yield self._initial_turn()
         while self.turn < self.length:
@@ -170,7 +170,7 @@ class Coevolution:
     def _complete_turn(
         self, meetings: Sequence[Meeting], judged: Sequence[int], fold: Fold, started: float
     ) -> Turn:
-        """Score all *meetings* of a turn, which are unique, and evaluate the *judged* populations."""
+        """Score the unique *meetings* of a turn, and set the fitness of the *judged* populations."""
         simulated = self.evaluator.simulations
         scores = self._scores(meetings)
         for index in judged:
@@ -200,7 +200,7 @@ class Coevolution:
         population.judge(fitness, floor)
 
     def _scores(self, meetings: Collection[Meeting]) -> dict[Meeting, Score]:
-        """Score unique meetings, sorted so that designs with common first members share a batch."""
+        """Score unique meetings, sorted so that designs with the same first members share a batch."""
         together = sorted(meetings)
         with self._naming_individuals(together):
             scores = self.evaluator.evaluate(self._designs(together), len(together))
@@ -219,7 +219,7 @@ class Coevolution:
 
     @contextlib.contextmanager
     def _naming_individuals(self, meetings: Sequence[Meeting]) -> Iterator[None]:
-        """Add the individuals to an error that has only the places of their designs among *meetings*."""
+        """Add the names of individuals to an error that contains only the indices of their *meetings*."""
         try:
             yield
         except ComponentError as error:
@@ -268,7 +268,7 @@ def first_meetings(sizes: Sequence[int]) -> list[Meeting]:
 
 
 def _teams_of_others(index: int, sizes: Sequence[int]) -> list[Meeting]:
-    """Return teams that include every member of the other populations; members of small ones recur."""
+    """Return teams that cover all members of the other populations; those of smaller ones recur."""
     others = [size for i, size in enumerate(sizes) if i != index]
     return [tuple(position % size for size in others) for position in range(max(others))]
 

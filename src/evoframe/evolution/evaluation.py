@@ -15,7 +15,7 @@ from evoframe.errors import ComponentError, WorkerError
 
 __all__ = ["Evaluator", "score_designs"]
 
-_LARGEST_BATCH = 4  # these share the overhead of a call and the preparation of a common body
+_LARGEST_BATCH = 4  # designs; they share the overhead of a call and the preparation of a common body
 _BATCHES_PER_WORKER = 2  # batches shrink towards the end, so that all workers finish together
 
 
@@ -26,7 +26,7 @@ class Evaluator:
     Attributes:
         simulator: Simulates new designs.
         objective: Defines the samples to record, and scores outcomes.
-        workers: Process batches in parallel.
+        workers: Started workers, which process batches in parallel.
         simulations: Number of designs simulated so far.
     """
 
@@ -40,7 +40,7 @@ class Evaluator:
         """Return the score of each design; equal designs are simulated once, across all calls.
 
         Args:
-            designs: Designs, consumed one by one while earlier ones are simulated.
+            designs: The designs, consumed one by one while earlier ones are simulated.
             count: Number of designs.
 
         Raises:
@@ -91,7 +91,7 @@ class Evaluator:
 
 @contextlib.contextmanager
 def _locating_designs(keys: Sequence[bytes]) -> Iterator[None]:
-    """Add to an error the places of the designs of the failed batch among *keys*."""
+    """Add to an error the indices in *keys* of the designs of the failed batch."""
     try:
         yield
     except WorkerError as lost:

@@ -92,7 +92,7 @@ class Population:
         return decoded
 
     def called(self, position: int) -> str:
-        """Return the name of the individual at *position*, as errors show it."""
+        """Return the name of the individual at *position* in errors."""
         return f"{self.name} {self.members[position].id}"
 
     @property
@@ -108,13 +108,13 @@ class Population:
 
         Args:
             fitness: One value per genome; ``None`` if a simulation diverged. Such a genome gets the lowest
-                fitness of the other genomes of this turn; if there are none, the lowest that the population
-                has had.
-            floor: Fitness of such a genome if there is no earlier fitness either: the lowest score of this
-                turn.
+                fitness of the other genomes in this turn; if all diverged, the lowest fitness of earlier
+                turns.
+            floor: Fitness of such a genome if there are no earlier turns either: the lowest score of this
+                turn; ``None`` without scores.
 
         Raises:
-            RunError: All simulations diverged, so that there is no such score.
+            RunError: All simulations of the initial turn diverged.
         """
         lowest = min((value for value in fitness if value is not None), default=self._lowest)
         if lowest is None:
@@ -209,7 +209,7 @@ class Population:
         return attrs.evolve(member, id=key, genome_size=size, age=age, species=species)
 
     def _note_champion(self) -> None:
-        """Replace the champion if the fittest exceeds its latest fitness, as in the authors' code."""
+        """Replace the standing champion if the fittest member exceeds its latest fitness (authors' code)."""
         best = self.members[self.fittest()]
         if self._best_so_far is None or _fitness(best) > self._best_so_far:
             self._best_so_far = _fitness(best)
@@ -222,7 +222,7 @@ class Population:
 
 @attrs.frozen
 class _Saved:
-    """The form of the result of :meth:`Population.state`."""
+    """The document that :meth:`Population.state` returns."""
 
     evolver: Any
     rng: dict[str, Any]

@@ -58,7 +58,7 @@ class Champion:
 
 
 def champion_document(pair: BestPair, simulation: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the champion as JSON values, complete enough to simulate it again on any machine."""
+    """Return the champion as JSON values, with everything needed to simulate it again on any machine."""
     return {
         "format": FORMAT,
         "score": pair.score,

@@ -1,4 +1,4 @@
-"""Reading of a run's database, which may come from a stranger: nothing in it is trusted."""
+"""Reading of a run's database, which is untrusted input."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from evoframe.record.layout import CONFIG_FILE, RUN_FORMAT, schema
 
 __all__ = ["Database", "Table"]
 
-# In a crafted database, pages that refer to each other can hold more rows than a computer can count.
+# In a crafted database, pages that refer to each other can yield a practically infinite number of rows.
 _STEPS_PER_BYTE = 20  # of SQLite's virtual machine: about fifty times the cost of reading a whole table
 _STEPS = 100_000
 
@@ -93,7 +93,7 @@ class Database:
         return [row[0] for row in self._fetched("SELECT name FROM sqlite_master WHERE type = 'table'")]
 
     def refuse_another(self, config: Mapping[str, Any]) -> None:
-        """Check that this is the database of a run with *config*, in the format of this evoframe.
+        """Check that this is the database of a run with *config*, in the format of this version of evoframe.
 
         The format is checked first, because other formats may have other tables. A table is queried only if
         its definition equals the schema character for character: a view could have its name.
@@ -147,7 +147,7 @@ class Database:
 
     @contextlib.contextmanager
     def _limit_work(self) -> Iterator[None]:
-        """Interrupt statements that take longer than any can in an intact database of this size."""
+        """Interrupt statements that exceed the work possible in an intact database of this size."""
         budget = iter(range(_STEPS_PER_BYTE * _size(self.path) // _STEPS + 100))
         self._connection.set_progress_handler(lambda: next(budget, None) is None, _STEPS)
         with _wrap_errors(self.path):

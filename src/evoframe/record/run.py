@@ -27,7 +27,7 @@ class Report:
 
     Attributes:
         directory: Its directory.
-        words: Its conclusions, as in ``conclusions.txt``.
+        words: Its conclusions, the text of ``conclusions.txt``.
         files: Paths of all its files.
     """
 
@@ -171,7 +171,7 @@ class Run:
         Raises:
             InputError: The format or the tables differ, or the database is damaged.
         """
-        self.begun = False  # in case the next line fails
+        self.begun = False  # remains False if the next line fails
         self.begun = self._database is not None and bool(self._database.tables())
         if self._database is not None and self.begun:
             self._database.refuse_another(self.config)
@@ -227,7 +227,7 @@ class Run:
         return self._tables[name]
 
     def _opened(self) -> Database:
-        if self._database is None:  # no file; or a run of this process, which holds all tables there are
+        if self._database is None:  # no file, or a run of this process, which holds all existing tables
             raise InputError("no such file or table", source=self.directory / DATABASE_FILE)
         if self._database.closed:
             raise ValueError(f"{self.directory}: the run is closed; read tables inside `with open_run(...)`")

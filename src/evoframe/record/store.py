@@ -36,7 +36,7 @@ _SYNC_INTERVAL = 1.0  # s; a power cut loses at most the turns since the last sy
 
 @attrs.define
 class Store:
-    """The directory of a run that only this process writes to.
+    """The directory of a run, to which only this process writes.
 
     All methods raise :class:`RunError` if writing fails.
 
@@ -165,7 +165,7 @@ class Store:
         self._synchronize(at_once=work.seconds > _SYNC_INTERVAL / 4)
 
     def update_champion(self) -> None:
-        """Write the champion's files, if they are those of an earlier champion."""
+        """Write the champion's files, unless they are up to date."""
         if self._unwritten is not None:
             self.save_champion(*self._unwritten)
             self._unwritten = None

@@ -1,4 +1,4 @@
-"""The plugins of this process: discovery, components on offer, observers."""
+"""The plugins of this process: discovery, offered components, observers."""
 
 from evoframe.registry.discovery import discover
 from evoframe.registry.hookspecs import hookimpl

@@ -1,4 +1,4 @@
-"""The registry of plugins: components on offer, observers, and skipped plugins."""
+"""The registry of plugins: offered components, observers, and skipped plugins."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ KINDS: Mapping[str, Kind] = {
 }
 """Name of a kind -> the kind."""
 
-_NOUNS = {"strategy": "collaboration strategy"}  # in messages, if not the name of the kind
+_NOUNS = {"strategy": "collaboration strategy"}  # kind -> its name in messages, if different
 
 _KEYS = {kind: key for key, kind in COMPONENTS.items()} | {
     kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
@@ -83,7 +83,7 @@ def _new_manager() -> pluggy.PluginManager:
 
 @attrs.define
 class Plugins:
-    """The plugins of this process: components on offer, observers, and skipped plugins."""
+    """The plugins of this process: offered components, observers, and skipped plugins."""
 
     manager: pluggy.PluginManager = attrs.field(factory=_new_manager)
     offers: list[Offer] = attrs.field(factory=list)
@@ -144,7 +144,7 @@ class Plugins:
         return sorted({offer.name for offer in self.offers if offer.kind == kind})
 
     def missing(self, distributions: Iterable[str]) -> list[str]:
-        """Return the *distributions* that offer no component here."""
+        """Return those of *distributions* that offer no component."""
         present = {offer.source.distribution for offer in self.offers}
         return [name for name in distributions if name not in present]
 

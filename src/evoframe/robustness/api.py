@@ -39,7 +39,7 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
             of their finished runs), and files with designs.
         controllers: Number of random controllers.
         published: Whether to add the published bodies of the simulator.
-        seed: The only seed from which the controllers derive.
+        seed: Seed from which all random controllers derive.
         preset: The preset that simulates all bodies; by default, a champion is simulated as in its run.
         workers: Overrides ``executor.workers``; the result does not depend on it.
         plugins: The plugins to choose from; by default the installed ones.

@@ -38,7 +38,7 @@ class Part:
     """The bodies of one file or run.
 
     Attributes:
-        named: The source as the user named it.
+        named: The source as given by the user.
         config: Configuration that simulates them.
         bodies: One or more bodies.
     """
@@ -164,7 +164,7 @@ def _executor(planned: Planned) -> Layer:
 
 
 def _of_job(job: Job) -> Part:
-    """Return the bodies of a run or file, each in its own group; the only body of a file has its path."""
+    """Return the bodies of a run or file, each in its own group; labels equal to its name become its path."""
     named = _text(job.path)
     labels = [named if label in (job.path.name, str(job.path)) else label for label in job.labels]
     bodies = [

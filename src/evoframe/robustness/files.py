@@ -79,7 +79,7 @@ def document_of(measured: Robustness) -> dict[str, Any]:
 
 
 def refuse_another(directory: Path, setting: Setting, *, force: bool = False) -> None:
-    """Check that a directory is missing or empty, or has a measurement with the same setting.
+    """Check that a directory is missing or empty, or contains a measurement with the same setting.
 
     Args:
         directory: Directory for a new measurement.
@@ -87,7 +87,7 @@ def refuse_another(directory: Path, setting: Setting, *, force: bool = False) ->
         force: Whether to overwrite a measurement that is damaged or has another setting.
 
     Raises:
-        InputError: The directory has something else, or a measurement with another setting.
+        InputError: The directory contains something else, or a measurement with another setting.
     """
     path = directory / SETTING_FILE
     try:

@@ -1,4 +1,4 @@
-"""Measurement of bodies with controllers that were not evolved for them: the same random ones for all.
+"""Measurement of all bodies with the same random controllers, which were not evolved for them.
 
 This is the paper's robustness experiment (docs/experiment.md, "The experiments"), for any simulator that
 draws controllers.
@@ -89,7 +89,7 @@ class Setting:
 
     @property
     def groups(self) -> dict[str, list[int]]:
-        """Name of each group -> the columns of its bodies, in the order of the first column."""
+        """Name of each group -> columns of its bodies; groups are in the order of their first columns."""
         found: dict[str, list[int]] = {}
         for column, body in enumerate(self.bodies):
             found.setdefault(body.group, []).append(column)
@@ -226,7 +226,7 @@ class Bench:
 
 @attrs.frozen(eq=False)
 class _Batch:
-    """A body and the numbers of its controllers, which the worker draws so that they are not sent to it."""
+    """A body and the numbers of its controllers; the worker draws the controllers, which are not sent."""
 
     body: int
     label: str

@@ -33,7 +33,7 @@ class Check:
 
     Attributes:
         subject: Name of the check.
-        state: ``ok``; ``note`` for information that matters; ``problem`` for a fault to be fixed.
+        state: ``ok``; ``note`` for information; ``problem`` for a fault to be fixed.
         finding: The result as a sentence.
     """
 
@@ -115,7 +115,7 @@ def _versions(config: RunConfig) -> str:
 
 
 def _initial_meeting(plugins: Plugins) -> str:
-    """Simulate the initial meeting of a small run, without saving it."""
+    """Simulate the initial turn of a small run, without saving it."""
     config = load_config("quick", overrides=["run.generations=0"], plugins=plugins)
     with assemble(config) as coevolution:
         turn = next(iter(coevolution))
@@ -177,14 +177,14 @@ def _evaluated(turn: int, roles: list[str], config: RunConfig) -> Iterable[str]:
     if turn == 0:
         return roles
     if turn > config.run.generations * len(roles):
-        return []  # the closing meeting
+        return []  # the turn of the final pair
     return [roles[(turn - 1) % len(roles)]]
 
 
 def _faults_of_best_pairs(
     best_pairs: Iterable[Mapping[str, Any]], pairs: Iterable[Mapping[str, Any]]
 ) -> Iterator[tuple[str, str]]:
-    """Yield a fault unless *best_pairs* are exactly the turns' best pairs that set a new record."""
+    """Yield a fault unless *best_pairs* are exactly the pairs with a score above all of earlier turns."""
     best: dict[int, float] = {}
     for pair in pairs:
         if pair["score"] is not None:

@@ -47,7 +47,7 @@ class Execution:
         return None if self._store.last_turn < 0 else self._store.last_turn
 
     def play(self, stop: Callable[[], bool] = lambda: False) -> Run:
-        """Run to the end, once.
+        """Execute the run to its end; can be called once.
 
         Args:
             stop: Called after every turn; ``True`` stops the run there.

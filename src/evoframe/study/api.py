@@ -69,7 +69,7 @@ class StudyResult:
 
 @attrs.frozen
 class StudyPlan:
-    """The work that a study would do.
+    """The runs that a study would execute, with their estimated cost.
 
     Attributes:
         found: The current state of the study.
@@ -121,7 +121,7 @@ def run_study(  # noqa: PLR0913 - all but the first are keywords
         modules: Local plugins (importable names or ``.py`` files) for this process and the workers.
         plugins: The plugins for reading the study; by default the installed ones and *modules*.
         watcher: Receives the progress.
-        stop: Called several times a second; if true, the study stops after the turns in progress.
+        stop: Called several times a second; if it returns true, runs stop after the turn in progress.
         **settings: Settings by key, as for :func:`evoframe.run`, including ``runs`` and ``grid``; ``grid``
             replaces the whole grid, a dotted key such as ``grid.aggregator`` one key of it.
 

@@ -36,13 +36,13 @@ _LOCK_FILE = "study.lock"
 
 
 class Watcher:
-    """A receiver of a study's progress that ignores it; subclasses override the methods they need."""
+    """Receiver of the progress of a study; every method does nothing unless a subclass overrides it."""
 
     def on_begin(self, study: Study, todo: Sequence[Planned], done: Mapping[Planned, Row]) -> None:
         """Receive the runs to execute or verify, and the rows of those that need no work."""
 
     def on_run_started(self, planned: Planned) -> None:
-        """Receive a run that starts or resumes."""
+        """Receive a run that was started or resumed."""
 
     def on_turn_finished(self, planned: Planned, turn: int, best: float | None) -> None:
         """Receive a run's latest turn, and its best score since it started or resumed."""

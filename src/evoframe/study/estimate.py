@@ -54,7 +54,7 @@ def estimate_cost(missing: Sequence[Planned], finished: Mapping[Planned, float])
     seconds_per_pair = 0.0
     if missing:
         with assemble(missing[0].cell.config) as coevolution:
-            work = next(iter(coevolution)).workload  # the initial meeting, with few repeated pairs
+            work = next(iter(coevolution)).workload  # the initial turn, with few repeated pairs
             seconds_per_pair = work.seconds / work.pairs * coevolution.evaluator.workers.workers
     size = len(missing) * _STATE_BYTES + pairs * _PAIR_BYTES
     return Estimate(seconds_per_pair * pairs, size / 1e6, "the first turn of one run")

@@ -72,7 +72,7 @@ class Cell:
 
     @functools.cached_property
     def pairs(self) -> int:
-        """Number of pairs that a run scores, including repeats, without the final meeting."""
+        """Number of pairs that a run scores, including repeats, without the final pair."""
         sizes = [population.size for population in self.config.populations.values()]
         strategy = self.config.collaboration.component
         generation = 0

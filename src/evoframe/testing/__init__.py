@@ -20,7 +20,7 @@ except ImportError as error:
         "in a checkout of evoframe, install them with: pip install '.[testing]'"
     ) from error
 
-# Makes a failing law show the compared values, like an assertion in the plugin's own tests.
+# Failing laws then show the compared values, like assertions in the plugin's own tests.
 pytest.register_assert_rewrite(
     *(
         f"evoframe.testing.{module}"

@@ -43,7 +43,7 @@ class SimulatorContract(ComponentContract[Simulator]):
     protocol = Simulator
 
     def designs(self) -> Sequence[Design]:
-        """Return at least three designs; preferably, some different ones with equal keys."""
+        """Return at least three designs, preferably with some that differ but have equal keys."""
         pytest.fail("override designs() to return at least three examples")
 
     def diverging(self) -> Sequence[Design]:

@@ -24,7 +24,7 @@ __all__ = ["WorkerProcesses"]
 
 R = TypeVar("R")
 
-_SILENT = 256  # replaces the exit code 0, which pebble treats as a normal end
+_SILENT = 256  # instead of the exit code 0, which pebble would treat as a normal end
 
 
 class _Process(SpawnProcess):

@@ -3,7 +3,7 @@
 From the bottom up: :mod:`.documents` reads and writes genomes as JSON values and expresses them as networks,
 :mod:`.graphs` converts them to graphs for figures, :mod:`.options` defines the options that evolvers share,
 :mod:`.randomness` gives each population its own random stream, :mod:`.genomes` is the pool that creates
-genomes, :mod:`.cohort` the current generation, and :mod:`.network_run` an evolver without its selection.
+genomes, :mod:`.cohort` the current generation, and :mod:`.network_run` the base class of evolutions.
 """
 
 from evoframe_evolvers.cppn.cohort import Cohort, SavedCohort

@@ -61,7 +61,7 @@ class Cohort:
         return self.phase == "told"
 
     def ask(self) -> list[Any]:
-        """Return the genomes; they can be requested once."""
+        """Return the genomes; can be called once per generation."""
         if self.phase != "new":
             raise RuntimeError("ask() called again before tell(): the last genomes have no fitness yet")
         self.phase = "asked"

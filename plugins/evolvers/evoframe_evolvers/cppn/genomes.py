@@ -134,7 +134,7 @@ class GenePool:
         }
 
     def restore(self, saved: SavedPool, genomes: Collection[Any]) -> None:
-        """Continue from what :meth:`state` returned.
+        """Continue from the result of :meth:`state`.
 
         Args:
             saved: The document.

@@ -1,4 +1,4 @@
-"""Evolution of networks without the reproduction, which subclasses add."""
+"""Base class for the evolution of networks; subclasses add the reproduction."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["NetworkRun"]
 
 
 class NetworkRun(ABC):
-    """Base of the evolution of genomes of a pool; subclasses set the pool, the size and the first cohort."""
+    """Evolution of the genomes of a pool; subclasses set the pool, the size and the first cohort."""
 
     _pool: GenePool
     _cohort: Cohort
@@ -72,4 +72,4 @@ class NetworkRun(ABC):
 
     @abstractmethod
     def restore(self, state: Any) -> None:
-        """Continue from what :meth:`state` returned."""
+        """Continue from the result of :meth:`state`."""

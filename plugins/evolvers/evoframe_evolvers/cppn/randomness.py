@@ -46,7 +46,7 @@ class PrivateStream:
         return [version, list(internal), next_gauss]
 
     def restore(self, state: Any) -> None:
-        """Continue from what :meth:`state` returned.
+        """Continue from the result of :meth:`state`.
 
         Raises:
             ValueError: *state* is not such a state; this stream is unchanged.

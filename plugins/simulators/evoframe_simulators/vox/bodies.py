@@ -23,7 +23,7 @@ def check_design(design: Design) -> None:
     """Reject a design that is not a body with a controller; the solver checks the values in the cells.
 
     Raises:
-        InputError: The array of the role ``key`` has another type or shape than expected.
+        InputError: The array of the role ``key`` has an unexpected type or shape.
     """
     material, phase = design.roles[MORPHOLOGY], design.roles[CONTROLLER]
     if material.ndim != 3 or material.dtype != np.uint8:

@@ -1,4 +1,4 @@
-"""Solver models for settings, and the clocks of bodies in them."""
+"""Solver models for settings, and the clocks (time step and number of steps) of bodies."""
 
 from __future__ import annotations
 

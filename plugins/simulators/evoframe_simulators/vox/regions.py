@@ -26,7 +26,7 @@ class FixedRegion:
 
     Attributes:
         origin: Corner with the smallest coordinates, as fractions of the canvas.
-        size: Lengths of the edges, as fractions of the canvas; the default clamps the slab x = 0.
+        size: Lengths of the edges, as fractions of the canvas; the default covers the voxels at x = 0.
         degrees_of_freedom: Clamped degrees of freedom: ``x``, ``y``, ``z``, and ``rx``, ``ry``, ``rz`` for
             rotations about the axes of the world.
     """

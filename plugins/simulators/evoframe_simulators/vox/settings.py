@@ -56,21 +56,22 @@ class VoxSettings:
         fixed: Boxes whose voxels are clamped: tables with ``origin`` and ``size``, fractions of the canvas,
             and ``degrees_of_freedom``, a list from x, y, z, rx, ry, rz. Empty: the body is free.
         self_collision: Whether voxels that are not neighbors repel each other.
-        collision_envelope: Distance at which repulsion starts, in mean voxel sizes: 1.5 in the paper's
-            engine, 1 for touching voxels.
+        collision_envelope: Distance between the centers of voxels at which repulsion starts, as a multiple of
+            their mean size: 1.5 in the paper's engine; 1: repulsion starts on contact.
         collision_horizon: Radius of the search for contact candidates, in voxel edges.
         complete_contacts: Whether to find every contact in time; the paper's engine may find some late.
         contact_damping: Damping ratio of contacts between voxels; 0 in the paper's engine.
         contact_friction: Whether contacts between voxels have friction; not in the paper's engine.
         time_step_fraction: Time step as a fraction of the largest stable one.
         substeps: Number of solver steps in each time step; it does not change the sampled instants.
-        step_limit: Maximum number of steps of a body; bodies without bonds may take several times as many.
+        step_limit: Maximum number of steps of a body; a body that requires more cannot be simulated. Bodies
+            without bonds can require several times as many steps as others.
         bond_damping: Damping ratio of the bonds.
         slow_damping: Damping ratio of the motion relative to the ground.
         collision_damping: Damping ratio of the floor contact.
-        largest_strain: Strain of a bond beyond which the body counts as diverged.
-        largest_distance: Distance of a voxel from its start, in longest edges of the canvas, beyond which the
-            body counts as diverged.
+        largest_strain: Strain of a bond, dimensionless, beyond which the body counts as diverged.
+        largest_distance: Distance of a voxel from its initial position, as a multiple of the longest edge of
+            the canvas, beyond which the body counts as diverged.
     """
 
     duration: float = attrs.field(default=0.07, validator=VALID_SETTING["duration"])

@@ -27,7 +27,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "twice the duration": ("lasts over twice the duration", "is a moment, not a posture"),
     "offsets jittered by 1 %": ("tolerates errors of the offsets", "needs exact offsets"),
 }
-"""Name of a change -> what it means that the score is kept, and that it is lost."""
+"""Name of a change -> interpretation if the score is kept, and if it is lost."""
 
 _SEED = 20251024  # of all jitter, so that a verification is reproducible
 

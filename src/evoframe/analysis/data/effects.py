@@ -39,8 +39,8 @@ def factorials(data: StudyData) -> list[Factorial]:
     """Return the effects of the keys of a two-way grid on each measure.
 
     Returns:
-        Nothing unless the grid has two keys with at least two values each and every combination has at least
-        five finished runs, the smallest group for which tests are shown.
+        One item per measure; none unless the grid has two keys with at least two values each, and every
+        combination has at least five finished runs, the smallest group for which tests are shown.
     """
     if len(data.keys) != 2:
         return []

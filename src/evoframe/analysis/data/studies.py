@@ -34,7 +34,7 @@ __all__ = ["YARDSTICKS", "StudyData", "View", "Yardstick", "load_study"]
 Yardstick: TypeAlias = Literal["score", "fitness"]
 
 YARDSTICKS: tuple[Yardstick, ...] = ("score", "fitness")
-"""Score of the best pair, which is comparable across aggregators, and best fitness, as published."""
+"""Score of the best pair, which is comparable across aggregators; best fitness, which the paper reports."""
 
 
 @attrs.frozen
@@ -103,9 +103,9 @@ class StudyData:
     def views(self, yardstick: Yardstick) -> list[View]:
         """Return a view for each combination of all keys but the last, which distinguishes its groups.
 
-        If there are several views, one more compares the best group of each: the one with the greatest mean
-        rank on the *yardstick*, which is first in the ranking. Its name includes its view, as in
-        ``WM (n = 2)``. A study with an empty grid has one view of one group, ``all``.
+        If there are several views, one more compares the best group of each, which has the greatest mean rank
+        on the *yardstick*. Its name includes that of its view, as in ``WM (n = 2)``. A study with an empty
+        grid has one view of one group, ``all``.
         """
         if not self.keys:
             return [View(self.label, "group", {"all": self.rows})]

@@ -52,7 +52,7 @@ class Compared:
 
     @property
     def where(self) -> dict[str, str]:
-        """The cells that identify the comparison in a line of a table."""
+        """The cells that identify the comparison in a row of a table."""
         return {"view": self.view.title, "yardstick": self.yardstick}
 
     @property

@@ -28,7 +28,7 @@ def axis_title(name: str, unit: str) -> str:
 
 
 def in_unit(table: pd.DataFrame, columns: Sequence[str], unit: str) -> pd.DataFrame:
-    """Return a table whose *columns* are converted from *unit* to the unit of reports, which titles name."""
+    """Return a table with *columns* converted from *unit* to the unit of reports, stated in their titles."""
     shown = table.copy()
     factor = unit_factor(unit)
     if factor != 1.0:

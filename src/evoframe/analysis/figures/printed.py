@@ -1,7 +1,7 @@
 """Style of printed figures: widths, colors, and line breaks of names.
 
-The colors are those of Okabe and Ito (2008), which color-blind people can distinguish, without yellow, which
-is barely visible on white.
+The colors are those of Okabe and Ito (2008), which color-blind people can distinguish. Yellow is omitted,
+since it is barely visible on white.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ COLUMN, BOTH_COLUMNS = 3.5, 7.0
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
-"""Seven colors and four dash patterns: 28 lines with successive colors and dashes differ."""
+"""Seven colors and four dash patterns, which distinguish up to 28 lines."""
 
 _LINES = 6  # greatest number of lines of a name
 _LINE = 0.13  # height of a line of a label, in inches
@@ -64,5 +64,5 @@ def text_width(text: str, size: float, weight: str = "normal") -> float:
 
 
 def row_height(labels: Iterable[str], least: float) -> float:
-    """Return the distance between labels of seven points, in inches: *least* or more."""
+    """Return the distance between labels in a font of seven points, in inches; at least *least*."""
     return max(least, 0.08 + _LINE * max(label.count("\n") + 1 for label in labels))

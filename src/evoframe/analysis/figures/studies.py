@@ -51,7 +51,7 @@ def curves(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
 
 
 def curves_of(drawn: Sequence[Line], view: View, yardstick: Yardstick, unit: str = "") -> Figure:
-    """Draw :func:`curves` from existing lines of the view, whose bands take long to compute."""
+    """Draw :func:`curves` from existing lines of the view, since computing their bands takes long."""
     return draw_lines(drawn, axis_title(CURVE_NAMES[yardstick], unit), view.title, f"{view.key}: runs")
 
 
@@ -156,7 +156,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
             va="center",
             size=8,
         )
-    axes.locator_params(axis="x", nbins=6)  # more labels would nearly touch if names are long
+    axes.locator_params(axis="x", nbins=6)  # with more, long labels would nearly touch
     axes.set_yticks(range(len(groups)), labels)
     axes.set_ylim(len(groups) - 0.5, -0.5)  # the first group at the top
     axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=break_lines(view.key, height, 8))

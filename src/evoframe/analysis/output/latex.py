@@ -10,10 +10,10 @@ import pandas as pd
 
 __all__ = ["decimals", "fixed", "latex_table", "p_cell", "quartiles_cell"]
 
-_LINES = 45  # of a part; longer tables are split, because one column of a page is not higher
+_LINES = 45  # of a part; a longer table is split, because it does not fit into one column of a page
 _MOST = 6  # decimals; smaller numbers are printed with four digits
 _WRAPPED = r">{\raggedright}p{0.5\columnwidth}"
-_SIGNS = str.maketrans(  # characters that LaTeX's default fonts print as others
+_SIGNS = str.maketrans(  # characters that LaTeX's default fonts replace by others
     {"<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}"}
 )
 _NUMBER = re.compile(r"(< |-)?\d[\d.e+-]*( to -?\d[\d.e+-]*)?|-?")
@@ -27,7 +27,7 @@ def latex_table(table: pd.DataFrame, by: Sequence[str] = (), wrapped: str = "") 
 
     Args:
         table: The table.
-        by: Columns that are printed as a heading above the lines that share their values.
+        by: Columns whose values are printed as a heading above the lines that share them.
         wrapped: Column of long texts that is printed in several lines.
     """
     columns = table.drop(columns=[*by])
@@ -85,7 +85,7 @@ def _part(kinds: str, header: str, lines: Sequence[str]) -> str:
 
 
 def decimals(errors: Iterable[float]) -> int | None:
-    """Return the decimals up to the first digit of the smallest standard error; ``None`` if more than six."""
+    """Return the decimals to the first digit of the smallest standard error; ``None`` if more than six."""
     positive = [error for error in errors if error > 0]
     if not positive:
         return None

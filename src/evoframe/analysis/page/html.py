@@ -1,4 +1,4 @@
-"""Page that contains a whole report: viewing it requires no other file and no network."""
+"""Page that contains a whole report; displaying it requires no other file and no network."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Words:
 
 @attrs.frozen
 class Source:
-    """The text of a file, folded."""
+    """The text of a file, collapsed until the reader opens it."""
 
     kind: ClassVar[str] = "source"
     caption: str

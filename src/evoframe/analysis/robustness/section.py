@@ -1,4 +1,4 @@
-"""Section of a report on the measurement of robustness in its directory, if there is one."""
+"""Section of a report about the robustness measurement in the directory of the run or study."""
 
 from __future__ import annotations
 

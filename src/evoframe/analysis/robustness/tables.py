@@ -83,8 +83,9 @@ def bodies_table(measured: Robustness) -> pd.DataFrame:
 def pairs_table(found: Findings) -> pd.DataFrame:
     """Return a line for each pair of groups.
 
-    ``A12`` is the probability that the first group scores higher if both have random controllers, ``wins`` if
-    both have the same controller, and ``A12 by body`` that a body of the first group has the greater median.
+    ``A12`` is the probability that the first group scores higher if controllers are drawn independently,
+    ``wins`` if both groups have the same controller. ``A12 by body`` is the probability that a body of the
+    first group has the greater median.
     Groups of fewer than five values have no p-values.
     """
     if found.apart is None or found.within is None:

@@ -1,4 +1,4 @@
-"""Sections of a VXA file that are written although all their features are off."""
+"""Sections of a VXA file that must be present although all their features are off."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ CHANGES: Values = {
     "MinElasticMod": 0,
     "MaxElasticMod": 0,
 }
-"""Values for variable stiffness, which is off without its section of the structure."""
+"""Values for variable stiffness, which is off unless the structure has a section for it."""
 
 CONTROLLERS: Mapping[str, Values] = {
     "NeuralNet": {

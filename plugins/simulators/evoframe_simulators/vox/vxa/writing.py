@@ -1,4 +1,4 @@
-"""Writing of VXA files, always with every section: the engine leaves members of missing ones uninitialized.
+"""Writing of VXA files with all sections, since the engine leaves members of missing ones uninitialized.
 
 No text element is empty, because the engine's reader crashes on those (docs/physics.md, sections 12.8 and
 12.9). Numbers have all their digits, so that reading a file returns what was written.
