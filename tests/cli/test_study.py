@@ -50,7 +50,8 @@ def test_runs_the_grid_and_prints_its_results(evoframe: Evoframe, toy: list[str]
     assert len((tmp_path / "studies" / "grid" / "rows.csv").read_text().splitlines()) == 13
     again = evoframe("study", *toy)
     assert again.returncode == 0
-    assert again.stderr == ""
+    assert "runs done" not in again.stderr
+    assert "evoframe report studies/grid" in again.stderr
     assert again.stdout == made.stdout
 
 

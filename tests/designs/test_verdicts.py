@@ -36,10 +36,10 @@ def verification(**shares: float | None) -> Verification:
     [
         (1.0, "The score ignores gain (100% left)."),
         (0.9, "The score ignores gain (90% left)."),
-        (0.7, "The score with gain off (70% left)."),
+        (0.7, "The score becomes 70% with gain off."),
         (0.5, "The score comes from gain (50% left)."),
         (-0.2, "The score comes from gain (-20% left)."),
-        (None, "The score with gain off (diverged)."),
+        (None, "The score diverges with gain off."),
     ],
 )
 def test_a_clause_follows_from_the_share(config: RunConfig, share: float | None, text: str) -> None:

@@ -59,7 +59,8 @@ Examples:
 def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
     """Write a configuration to start from, with a comment on every option.
 
-    FILE must end in .toml; - is standard output. Every option is commented out and has its default.
+    FILE is the file to write, such as my.toml; - is standard output. Every option is commented out and has
+    its value in the preset.
     """
     text = starter(load_config(preset, plugins=plugins_of(ctx)), preset)
     write_file(path, text.encode(), force=force)

@@ -38,7 +38,7 @@ def report(
 
     DIR is the directory of a run or study, which need not be finished. The report of a study compares the
     values of the grid's last key, separately for each combination of the other keys, by two measures: the
-    score of the best pair, and the averaged fitness. The page report.html contains everything in one file.
+    score of the best pair, and the fitness. The page report.html contains everything in one file.
     """
     with needing_extra("report", "reports"):
         from evoframe.analysis import report as room  # noqa: PLC0415 - takes a second, and an extra

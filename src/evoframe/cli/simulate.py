@@ -123,7 +123,7 @@ def _are_lengths(bodies: list[_Body]) -> bool:
 def _table(bodies: list[_Body]) -> Table:
     table = Table(box=None, header_style="bold")
     table.add_column("body", overflow="fold")
-    table.add_column("displacement" if _are_lengths(bodies) else "score", overflow="fold")
+    table.add_column("score", overflow="fold")
     for body in bodies:
         step = f" at step {body.score.diverged_at}" if body.score.value is None else ""
         table.add_row(body.label, scored(body.score.value, body.unit) + step)
@@ -133,7 +133,7 @@ def _table(bodies: list[_Body]) -> Table:
 def _write_trace(path: Path, jobs: list[Job]) -> None:
     given = [(job, design) for job in jobs for design in job.designs]
     if len(given) != 1:
-        raise InputError(f"expected one body to trace, found {len(given)}", source="--trace")
+        raise InputError(f"expected one design to trace, found {len(given)}", source="--trace")
     [(job, design)] = given
     with naming(job.path):
         rows = list(trace_of(job.config.simulator.component, design))

@@ -9,7 +9,7 @@ import numpy as np
 from click.shell_completion import CompletionItem
 from rich.table import Table
 
-from evoframe.cli.context import common_options, is_quiet, modules_of, output, plugins_of, set_option
+from evoframe.cli.context import command, common_options, is_quiet, modules_of, output, plugins_of, set_option
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.sources import refuse_preset
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
@@ -29,7 +29,7 @@ __all__ = ["study"]
 
 _EPILOG = """\b
 Examples:
-  evoframe study small                        an example that takes a minute
+  evoframe study small                        an example, in seconds
   evoframe study paper --dry-run              600 runs: time and disk space
   evoframe study paper                        start it, in studies/paper
   evoframe study studies/paper                continue it
@@ -86,7 +86,7 @@ def study(
     STUDY is a TOML file (extends, runs, grid), a built-in study such as paper or small, or the directory of a
     study to continue. Only missing runs are executed, in an order that keeps a partial study balanced. The
     seed of each run derives from its configuration and index alone. At the end, rows.csv has one row for each
-    run, and curves.csv its progress turn by turn.
+    run, and curves.csv its best fitness and score in each generation.
     """
     refuse_preset(ctx, source)
     if is_study(Path(source)):
@@ -113,6 +113,10 @@ def study(
         click.echo(result.directory)
     else:
         output().print(_results(result))
+        if not result.left:
+            click.echo(
+                f"\nNext, figures, tests and a page:\n  {command(ctx, 'report', result.directory)}", err=True
+            )
     _print_failed(result)
     if stop.is_asked():
         what = f"{len(result.left)} runs remain in {result.directory}"

@@ -174,7 +174,8 @@ class _Reading:
         """Return the component that a table names, or ``None`` if there are faults."""
         if not isinstance(table, Mapping) or not isinstance(table.get("name"), str):
             message = f"expected one of {', '.join(plugins.names(kind))}, or a table with the key 'name'"
-            self.faults.append(Fault(path, f"{message}; found {found(table)}"))
+            problem = f"missing; {message}" if table is None else f"{message}; found {found(table)}"
+            self.faults.append(Fault(path, problem))
             return None
         options = {key: value for key, value in table.items() if key != "name"}
         try:

@@ -34,9 +34,19 @@ def verdict(verification: Verification, config: RunConfig, design: Design) -> st
         variant = variants.get(finding.name)
         share = verification.share(finding)
         clause = "" if variant is None or share is None else _clause(share, variant.kept, variant.lost)
-        left = "diverged" if share is None else f"{share:z.0%} left"
-        clauses.append(f"{clause or f'with {finding.name}'} ({left})")
-    return f"The score {', '.join(clauses)}." if clauses else ""
+        clauses.append(_described(clause, finding.name, share))
+    return f"The score {_listed(clauses)}." if clauses else ""
+
+
+def _described(clause: str, name: str, share: float | None) -> str:
+    if share is None:
+        return f"diverges with {name}"
+    return f"{clause} ({share:z.0%} left)" if clause else f"becomes {share:z.0%} with {name}"
+
+
+def _listed(clauses: list[str]) -> str:
+    *others, last = clauses
+    return f"{'; '.join(others)}; and {last}" if others else last
 
 
 def _clause(share: float, kept: str, lost: str) -> str:

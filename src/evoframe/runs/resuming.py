@@ -175,7 +175,7 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
     began = run.configuration() if run.begun else resolve_layers(layers, path.stem, plugins).deciding()
     if others := differences(began, config.deciding()):
         problem = "the configuration differs from that with which the run started"
-        todo = f"restore {CONFIG_FILE}, or start a new run with it: evoframe run {path}"
+        todo = f"undo these changes, or start a new run: evoframe run {path}"
         raise ConfigurationError(f"{_listed(problem, others)}\n  {todo}", source=run.directory)
     return config
 

@@ -12,8 +12,9 @@ from evoframe.study.plan import Planned
 
 __all__ = ["Estimate", "estimate_cost"]
 
-_STATE_BYTES = 200_000  # of a run's directory
-_PAIR_BYTES = 40  # a pair's row, with its share of the individuals
+_RUN_BYTES = 120_000  # a run's directory without the rows of its pairs and individuals
+_PAIR_BYTES = 40  # a pair's row
+_INDIVIDUAL_BYTES = 90  # an individual's row in one turn
 
 
 @attrs.frozen
@@ -56,5 +57,6 @@ def estimate_cost(missing: Sequence[Planned], finished: Mapping[Planned, float])
         with assemble(missing[0].cell.config) as coevolution:
             work = next(iter(coevolution)).workload  # the initial turn, with few repeated pairs
             seconds_per_pair = work.seconds / work.pairs * coevolution.evaluator.workers.workers
-    size = len(missing) * _STATE_BYTES + pairs * _PAIR_BYTES
+    individuals = sum(run.cell.individuals for run in missing)
+    size = len(missing) * _RUN_BYTES + pairs * _PAIR_BYTES + individuals * _INDIVIDUAL_BYTES
     return Estimate(seconds_per_pair * pairs, size / 1e6, "the first turn of one run")

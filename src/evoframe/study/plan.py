@@ -82,6 +82,12 @@ class Cell:
             generation += size * teams
         return len(first_meetings(sizes)) + self.config.run.generations * generation
 
+    @property
+    def individuals(self) -> int:
+        """Number of individuals evaluated in all turns of a run."""
+        sizes = [population.size for population in self.config.populations.values()]
+        return (1 + self.config.run.generations) * sum(sizes)
+
     def seed(self, index: int) -> int:
         """Return the seed of a run; it does not depend on the other cells or on the number of runs."""
         name = _identity([dict(self.settings), self.config.run.seed, index])

@@ -24,7 +24,10 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "contraction off": ("does not come from contraction", "comes from contraction"),
     "self collision off": ("does not depend on self collision", "depends on self collision"),
     "half the time step": ("does not depend on the time step", "depends on the time step"),
-    "twice the duration": ("lasts over twice the duration", "is a moment, not a posture"),
+    "twice the duration": (
+        "is kept over twice the duration",
+        "is not kept over twice the duration: it is a moment, not a posture",
+    ),
     "offsets jittered by 1 %": ("tolerates errors of the offsets", "needs exact offsets"),
 }
 """Name of a change -> interpretation if the score is kept, and if it is lost."""
