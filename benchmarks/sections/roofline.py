@@ -37,7 +37,7 @@ class Work:
 
 
 # Counted in libvox/kernels/vector_bonds.h and vector_motion.h, function by function; there is one coupling.
-_MATRIX = Work(29)  # matrix_of: 10 products, 7 sums for the diagonal, 6 sums and 6 doublings beside it
+_MATRIX = Work(29)  # matrix_of: 10 products, 7 sums for the diagonal, 6 sums and 6 doublings off it
 _TURN = Work(15)  # turn, turn_back
 _CHORD = Work(10)  # arc_ratio: 8 of the power series, with a difference before and a doubling after
 _ARC = Work(34, divisions=1, roots=2)  # arc_ratio of a bond that is turned far, in addition to the chord

@@ -74,10 +74,11 @@ class WeightedMean:
     """Weighted mean of the sorted scores (WM of the paper, arXiv 2510.24510).
 
     The scores, in descending order, are multiplied by *weights* and summed, so an individual is rewarded for
-    its best pairs. Without *weights*, the paper's table for 2, 3, 5, 7 or 10 collaborators is used.
+    its best pairs.
 
     Attributes:
-        weights: One non-negative weight for each collaborator, the largest score's first; their sum is 1.
+        weights: One non-negative weight for each collaborator, that of the largest score first; their sum
+            is 1. By default, those of the paper's table for 2, 3, 5, 7 or 10 collaborators.
         fold: Also accept 4, 6 and 20 collaborators, by the rule in the authors' code: adjacent sorted scores
             are averaged two by two, and the 2, 3 or 10 averages are weighted by the paper's table.
     """

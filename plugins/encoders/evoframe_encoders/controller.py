@@ -34,8 +34,8 @@ class CppnController:
     simulations, since they do not contract.
 
     Attributes:
-        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; in the paper, the inputs
-            are voxel indices.
+        normalized_coordinates: Whether the input coordinates run from -1 to 1 along each axis of the canvas;
+            otherwise they are voxel indices (paper).
     """
 
     normalized_coordinates: bool = False

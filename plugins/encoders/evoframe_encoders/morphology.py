@@ -54,8 +54,8 @@ class CppnMorphology:
         enclosure: Whether the outermost layer is passive, and the network determines the interior only
             (paper).
         threshold: Threshold for the absolute values of the outputs, dimensionless (paper).
-        normalized_coordinates: Whether each axis of the canvas runs from -1 to 1; in the paper, the inputs
-            are voxel indices.
+        normalized_coordinates: Whether the input coordinates run from -1 to 1 along each axis of the canvas;
+            otherwise they are voxel indices (paper).
         connected: Whether to keep only the largest part whose voxels are connected face to face; of equally
             large parts, the first one along x, then y, then z.
     """

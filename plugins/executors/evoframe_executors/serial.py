@@ -17,7 +17,7 @@ R = TypeVar("R")
 
 @attrs.frozen
 class Serial:
-    """No parallelism: the calling thread processes one item after the other."""
+    """No parallelism: the calling thread simulates one batch after another."""
 
     def start(self) -> ExecutorRun:
         """Return the single worker."""

@@ -24,7 +24,7 @@ class _Displacement:
 
     Attributes:
         every: Minimum time between samples, s; 0: a sample after every step.
-        first: Index of the sample at which the displacement starts.
+        first: Index of the sample at which the displacement starts; sample 0 follows the first step.
         last: Index of the sample at which the displacement ends.
     """
 

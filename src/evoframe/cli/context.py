@@ -80,7 +80,7 @@ def _speak(ctx: click.Context, parameter: click.Parameter, value: int) -> None:
 
 
 def common_options(function: F) -> F:
-    """Add ``-v``, ``-q`` and ``-p``, which may stand before or after the name of a command."""
+    """Add ``-v``, ``-q`` and ``-p``, which are accepted before or after the name of a command."""
     for option in (
         click.option(
             "-p",

@@ -135,7 +135,7 @@ def _bar(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
 
 
 def _table(groups: list[dict[str, Any]], unit: str) -> Table:
-    """Return one line for each group, displacements in millimeters."""
+    """Return a table with a row for each group; scores in meters are shown in millimeters."""
     factor, shown = unit_factor(unit), unit_name(unit)
     table = Table(box=None, header_style="bold")
     table.add_column("", overflow="fold")

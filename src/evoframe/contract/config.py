@@ -72,7 +72,7 @@ class RunSettings:
 
     Attributes:
         seed: Seed from which all random streams derive.
-        generations: Generations per population (the paper: 200, so 400 turns of two populations).
+        generations: Number of generations per population (paper: 200, i.e. 400 turns of two populations).
     """
 
     seed: int = attrs.field(default=1, validator=validators.ge(0))

@@ -109,7 +109,7 @@ class Variant:
         record: Samples to record: as many of the same tracks as in the unchanged simulation, so that the same
             objective can score them.
         kept: Interpretation if the variant keeps the score, as a clause about the score; may be empty.
-        lost: Interpretation if the variant loses the score, as a clause likewise.
+        lost: The same if the variant loses the score.
     """
 
     name: str

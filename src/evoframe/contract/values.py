@@ -200,9 +200,9 @@ class PopulationReport:
         members: All members, with the fitness of this turn.
         best: Best fitness of this turn.
         best_so_far: Best fitness of this turn and all earlier turns.
-        standing_champion: Fitness, at its latest evaluation, of the individual that a fitter one has not yet
-            replaced. It can fall when the individual is paired with new collaborators, and is constant
-            after it has left the population.
+        standing_champion: Latest fitness of the standing champion, which is replaced when the fittest member
+            exceeds it (as in the authors' code). It can fall when the standing champion is paired with new
+            collaborators, and is constant after that individual has left the population.
         mean: Mean fitness of this turn.
     """
 

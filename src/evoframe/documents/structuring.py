@@ -179,7 +179,7 @@ def _tuple(converter: Converter, value: Any, target: Any) -> tuple[Any, ...]:
 
 
 def _class_hook(converter: Converter, class_: type[Any]) -> Callable[[Any, Any], Any]:
-    """Structure a table into *class_*, running each field's validator beside the type checks.
+    """Structure a table into *class_*, running each field's validator in addition to the type checks.
 
     attrs alone stops at the first validator that fails; here every fault of a table is reported.
     """

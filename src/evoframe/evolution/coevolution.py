@@ -78,7 +78,7 @@ class Coevolution:
 
     @property
     def finished(self) -> bool:
-        """Whether all turns are complete."""
+        """True if all turns are complete."""
         return self.turn >= self.length and self._fittest_have_met
 
     def __iter__(self) -> Iterator[Turn]:

@@ -34,7 +34,7 @@ SETTING_FILE = "robustness.json"
 """The setting of a measurement, and the simulations that diverged."""
 
 SCORES_FILE = "scores.csv"
-"""Table of scores, a line for each controller and a column for each body; empty for diverged simulations."""
+"""Table of scores, a line for each controller and a column for each body; diverged simulations are empty."""
 
 _FORMAT = 1
 _LARGEST = 256  # MiB

@@ -85,7 +85,7 @@ class StudyPlan:
 
     @property
     def seconds(self) -> float:
-        """Estimated wall clock of these runs, s, each of which occupies one core."""
+        """Estimated wall clock of these runs, s; each run occupies one core."""
         pairs = sum(run.cell.pairs for run in self.to_run)
         ends = [0.0] * self.cores
         for run in self.to_run:

@@ -198,7 +198,7 @@ def _shared(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _removed(there: Mapping[str, Any], study: Study) -> Iterator[str]:
-    """Yield a line for each setting of a study's file with more runs or values than the study has."""
+    """Yield a line for each setting whose runs or values in the study's file are missing in *study*."""
     runs, grid = there.get("runs"), there.get("grid")
     if isinstance(runs, int) and study.runs < runs:
         yield f"runs: {runs} before, {study.runs} requested"

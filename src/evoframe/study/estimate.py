@@ -38,9 +38,9 @@ class Estimate:
 def estimate_cost(missing: Sequence[Planned], finished: Mapping[Planned, float]) -> Estimate:
     """Estimate the time and disk space of the missing runs.
 
-    Costs are proportional to the number of pairs. If runs are finished, their measured cost per pair is used.
-    Without finished runs, a trial of one turn gives an upper bound: it counts every pair as simulated, though
-    a repeated pair costs little.
+    The estimates are proportional to the number of pairs. If runs are finished, their measured cost per pair
+    is used. Otherwise a trial of the initial turn gives an upper bound on the time, since it has few repeated
+    pairs, which cost little.
 
     Args:
         missing: The runs to estimate.

@@ -227,7 +227,7 @@ class EvolverContract(ComponentContract[Evolver]):
             self._assert_sound(self._graph(dumped))
 
     def test_a_genome_has_one_graph(self) -> None:
-        """A genome has the same graph every time, also after JSON text, and is not changed."""
+        """A genome has the same graph every time, also when read from JSON text, and is not changed."""
         for dumped in self._drawable():
             before = _text(dumped)
             graph = self._graph(dumped)

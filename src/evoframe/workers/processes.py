@@ -66,7 +66,7 @@ class WorkerProcesses:
 
     @property
     def active(self) -> bool:
-        """Whether the pool accepts tasks."""
+        """True if the pool accepts tasks."""
         return self._pool.active
 
     def schedule(

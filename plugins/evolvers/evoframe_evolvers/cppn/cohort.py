@@ -57,7 +57,7 @@ class Cohort:
 
     @property
     def finished(self) -> bool:
-        """Whether the next generation is due."""
+        """True if the next generation is due."""
         return self.phase == "told"
 
     def ask(self) -> list[Any]:

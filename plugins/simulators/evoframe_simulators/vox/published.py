@@ -1,6 +1,6 @@
 """Published bodies, which ``evoframe robustness --published`` adds to a comparison.
 
-``published_sams.json`` beside this module contains the soft actuator morphologies of Alcaraz-Herrera et al.
+``published_sams.json`` next to this module contains the soft actuator morphologies of Alcaraz-Herrera et al.
 (arXiv 2408.09107), from their repository biomeld-catheter-controller, licensed under Apache-2.0. Each body is
 a list of layers in order of increasing z; within a layer x runs fastest, then y.
 """

@@ -32,7 +32,7 @@ def samples_of(simulator: Simulator, objective: Objective, design: Design, track
         return ()
     [outcome] = simulator.simulate([design], record)
     names = [*["start"] * record.initial, *(f"sample {index}" for index in record.samples)]
-    found = zip(names, outcome.times.tolist(), outcome.tracks[track], strict=False)  # diverged: maybe fewer
+    found = zip(names, outcome.times.tolist(), outcome.tracks[track], strict=False)  # fewer if it diverged
     return tuple(
         Sample(name, time, (float(at[0]), float(at[1]), float(at[2])))
         for name, time, at in found

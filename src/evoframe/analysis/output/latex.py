@@ -11,7 +11,7 @@ import pandas as pd
 __all__ = ["decimals", "fixed", "latex_table", "p_cell", "quartiles_cell"]
 
 _LINES = 45  # of a part; a longer table is split, because it does not fit into one column of a page
-_MOST = 6  # decimals; smaller numbers are printed with four digits
+_MOST = 6  # decimals; smaller numbers are printed with four significant digits
 _WRAPPED = r">{\raggedright}p{0.5\columnwidth}"
 _SIGNS = str.maketrans(  # characters that LaTeX's default fonts replace by others
     {"<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}"}
@@ -94,7 +94,7 @@ def decimals(errors: Iterable[float]) -> int | None:
 
 
 def fixed(value: float, places: int | None) -> str:
-    """Return a number with *places* decimals, or with four digits if *places* is ``None``."""
+    """Return a number with *places* decimals; with four significant digits if ``None`` or 1e6 or more."""
     return f"{value:.4g}" if places is None or abs(value) >= 1e6 else f"{value:.{places}f}"
 
 

@@ -105,7 +105,7 @@ class Cell:
 
 @attrs.frozen
 class Table:
-    """A table; numbers are displayed with four digits."""
+    """A table; integers are displayed in full, other numbers with four significant digits."""
 
     kind: ClassVar[str] = "table"
     caption: str

@@ -56,7 +56,7 @@ def _held_by_engine(start: float, length: float, cells: int, edge: float) -> _Sp
     def center(cell: int) -> float:
         return edge * (cell + 0.5) / whole
 
-    # The faces ascend in spite of rounding, so a binary search finds the cells.
+    # The faces ascend despite rounding, so a binary search finds the cells.
     first = bisect_right(range(cells), start, key=lambda cell: center(cell) + half)
     past = bisect_left(range(cells), start + length, key=lambda cell: center(cell) - half)
     return (first, past - 1) if first < past else None
