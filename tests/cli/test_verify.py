@@ -55,7 +55,7 @@ class TestRun:
         verified = evoframe("verify", *TOYS, "here")
         assert verified.returncode == 0, verified.stderr
         title, *table, verdict = verified.stdout.splitlines()
-        assert verdict.startswith("The score comes from gain (0% left)")
+        assert verdict.startswith("The score comes from gain (0% of unchanged)")
         least, middle, greatest = (quantity(factor * score, "m") for factor in (0.9, 1.0, 1.1))
         assert title == "here"
         assert [columns(line) for line in table] == [

@@ -1,4 +1,4 @@
-"""Files that a command writes where the user says."""
+"""Tests of writing the output of commands."""
 
 from __future__ import annotations
 

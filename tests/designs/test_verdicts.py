@@ -34,11 +34,11 @@ def verification(**shares: float | None) -> Verification:
 @pytest.mark.parametrize(
     ("share", "text"),
     [
-        (1.0, "The score ignores gain (100% left)."),
-        (0.9, "The score ignores gain (90% left)."),
+        (1.0, "The score ignores gain (100% of unchanged)."),
+        (0.9, "The score ignores gain (90% of unchanged)."),
         (0.7, "The score becomes 70% with gain off."),
-        (0.5, "The score comes from gain (50% left)."),
-        (-0.2, "The score comes from gain (-20% left)."),
+        (0.5, "The score comes from gain (50% of unchanged)."),
+        (-0.2, "The score comes from gain (-20% of unchanged)."),
         (None, "The score diverges with gain off."),
     ],
 )

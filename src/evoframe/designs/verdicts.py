@@ -41,7 +41,7 @@ def verdict(verification: Verification, config: RunConfig, design: Design) -> st
 def _described(clause: str, name: str, share: float | None) -> str:
     if share is None:
         return f"diverges with {name}"
-    return f"{clause} ({share:z.0%} left)" if clause else f"becomes {share:z.0%} with {name}"
+    return f"{clause} ({share:z.0%} of unchanged)" if clause else f"becomes {share:z.0%} with {name}"
 
 
 def _listed(clauses: list[str]) -> str:
