@@ -31,6 +31,7 @@ __all__ = [
     "modules_of",
     "needing_extra",
     "output",
+    "plugin_options",
     "plugins_of",
     "preset_option",
     "scored",
@@ -143,8 +144,12 @@ def modules_of(ctx: click.Context) -> tuple[str, ...]:
 
 def command(ctx: click.Context, *words: object) -> str:
     """Return a command for a user to type next, with the ``-p`` options of this invocation."""
-    options = [part for module in modules_of(ctx) for part in ("-p", module)]
-    return shlex.join(["evoframe", *map(str, words), *options])
+    return " ".join(filter(None, [shlex.join(["evoframe", *map(str, words)]), plugin_options(ctx)]))
+
+
+def plugin_options(ctx: click.Context) -> str:
+    """Return the ``-p`` options of this invocation as text; empty if there are none."""
+    return shlex.join(part for module in modules_of(ctx) for part in ("-p", module))
 
 
 def plugins_of(ctx: click.Context) -> Plugins:

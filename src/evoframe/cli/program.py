@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from evoframe._version import __version__
-from evoframe.cli.context import common_options, modules_of, plugins_of
+from evoframe.cli.context import common_options, modules_of, plugin_options, plugins_of
 from evoframe.cli.signals import exit_code
 from evoframe.errors import EvoframeError, PluginWarning, RunError
 from evoframe.messages import full_text
@@ -34,9 +34,9 @@ class _RunFailure(_Failure):
 
 
 def _failure(ctx: click.Context, error: EvoframeError) -> _Failure:
-    text, modules = full_text(error), modules_of(ctx)
-    if modules and "evoframe resume " in text:  # the core does not know the options of this command
-        text += f"\n  with the plugins of this command: {' '.join(f'-p {module}' for module in modules)}"
+    text, options = full_text(error), plugin_options(ctx)
+    if options and "evoframe resume " in text:  # the core does not know the options of this command
+        text += f"\n  with the plugins of this command: {options}"
     return (_RunFailure if isinstance(error, RunError) else _Failure)(text)
 
 

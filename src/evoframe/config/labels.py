@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from evoframe.config.layers import Layer
+from evoframe.documents import leaves
 
 __all__ = ["label_of"]
 
@@ -24,22 +25,14 @@ def label_of(source: str | Path, overrides: Iterable[Layer]) -> str:
     """
     parts: dict[str, str] = {}  # the last setting of a key wins, as in the configuration
     for layer in overrides:
-        for path, value in _settings(layer.tree, ()):
-            parts[".".join(path)] = _part(path, value)
+        parts |= {key: _part(key, value) for key, value in leaves(layer.tree)}
     parts.pop("run.seed", None)
     kept = [part for key, part in parts.items() if key.split(".")[0] not in _WITHOUT_EFFECT]
     label = "-".join([Path(source).stem, *kept])
     return label if len(label) <= _LONGEST else Path(source).stem
 
 
-def _settings(tree: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
-    for key, value in tree.items():
-        if isinstance(value, Mapping):
-            yield from _settings(value, (*path, key))
-        else:
-            yield (*path, key), value
-
-
-def _part(path: tuple[str, ...], value: Any) -> str:
-    text = str(value) if path[-1] == "name" else f"{path[-1]}{value}"
+def _part(key: str, value: Any) -> str:
+    name = key.rpartition(".")[2]
+    text = str(value) if name == "name" else f"{name}{value}"
     return re.sub(r"[^A-Za-z0-9._]+", "-", text).strip("-.")

@@ -12,10 +12,10 @@ from evoframe.contract import RunConfig, SupportsPublished, SupportsRandomContro
 from evoframe.designs import DEFAULT_PRESET, Job, read_job
 from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files import is_file, shown_name
+from evoframe.files import shown_name
 from evoframe.registry import Plugins
 from evoframe.robustness.measurement import Candidate
-from evoframe.study import STUDY_FILE, Planned, name_of, read_study, shown, survey
+from evoframe.study import STUDY_FILE, Planned, is_study, name_of, read_study, shown, survey
 
 __all__ = ["Candidates", "Part", "champions", "read_candidates"]
 
@@ -73,7 +73,7 @@ def read_candidates(
         InputError: A source cannot be read, or the bodies cannot be compared.
         ConfigurationError: The bodies cannot be simulated with these settings.
     """
-    studies = [path for path in sources if _is_study(path)]
+    studies = [path for path in sources if is_study(path)]
     alike = len({shown_name(path) for path in studies}) < len(studies)
     names = {path: _text(path) if alike else shown_name(path) for path in studies} if len(studies) > 1 else {}
     reader = _Reader(preset, overrides, plugins, names)
@@ -120,7 +120,7 @@ class _Reader:
     studies: Mapping[Path, str]
 
     def parts(self, path: Path) -> Iterator[Part]:
-        if _is_study(path):
+        if is_study(path):
             yield from self._of_study(path)
         else:
             yield _of_job(self._job(path))
@@ -152,10 +152,6 @@ def _some(reader: _Reader, path: Path) -> list[Part]:
     if not found:
         raise InputError("no run of this study is finished, so it has no champions", source=path)
     return found
-
-
-def _is_study(path: Path) -> bool:
-    return is_file(path / STUDY_FILE)
 
 
 def _executor(planned: Planned) -> Layer:
