@@ -9,9 +9,9 @@ SOURCES := pyproject.toml setup.py extensions.py $(C) $(wildcard lib*/*/*.py)
 PARALLEL := --numprocesses auto --dist worksteal
 
 LOWEST := $(VENV)-lowest
-LONG   := interpreters
+LONG   := interpreters latex
 
-.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters clean
+.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters latex clean
 
 ## run: run the published experiment (preset paper)
 run: $(VENV)/installed
@@ -60,6 +60,10 @@ sanitize: $(VENV)/developing
 ## interpreters: run the tests with each other installed version of Python
 interpreters: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
+
+## latex: typeset tables of reports
+latex: $(VENV)/developing
+	PYTHON=$(BIN)/python tests/latex/latex.sh
 
 ## fuzz: fuzz libvox and the readers of VXA files and configurations for SECONDS
 fuzz: $(VENV)/fuzzing

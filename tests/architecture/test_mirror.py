@@ -35,6 +35,7 @@ FOLDERS: Mapping[str, str] = {
     "data": "files that tests read",
     "experiment": "the paper's experiment, compared with its documents",
     "fuzz": "generated inputs",
+    "latex": "tables of reports, typeset by pdflatex",
     "libcppn": "the C library and its binding",
     "libvox": "the C library and its binding",
     "plugins": "a folder for each plugin in plugins/",

@@ -22,7 +22,7 @@ def test_list_names_every_component_with_its_plugin(evoframe: Evoframe) -> None:
 
 def test_list_says_in_a_line_what_each_is(evoframe: Evoframe) -> None:
     header, *lines = evoframe("plugins", "list").stdout.splitlines()
-    assert header.split() == ["kind", "name", "description", "distribution", "version"]
+    assert header.split() == ["setting", "name", "description", "distribution", "version"]
     [line] = [line for line in lines if line.split()[:2] == ["simulator", "vox"]]
     assert line.split()[-2:] == ["evoframe", __version__]
     assert len(line.split()) > 4

@@ -155,8 +155,8 @@ FAULTS = [
     (["--set", "collaboration.n=30"], ["--set collaboration.n=30: collaboration: ", "30", "25"]),
     (["--set", "simulator.step=1"], ["--set simulator.step=1: simulator.step: "]),
     (["--set", "run.generations=many"], ["--set run.generations=many: run.generations: ", '"many"']),
-    (["nowhere.toml"], ["nowhere.toml: ", "No such file or directory"]),
-    (["papre"], ["'papre'", "'paper'"]),
+    (["nowhere.toml"], ["nowhere.toml: ", "preset or file"]),
+    (["papre"], ["papre: ", "'paper'"]),
     (
         ["--set", "aggregator=wn", "--set", "collaboration.n=30"],
         ["--set aggregator=wn: aggregator: ", "--set collaboration.n=30: collaboration: "],

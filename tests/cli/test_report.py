@@ -96,7 +96,7 @@ def test_of_a_study_that_is_not_finished_says_so(
 @pytest.mark.parametrize(
     ("directory", "message"),
     [
-        ("nowhere", "config.toml"),
+        ("nowhere", "does not exist"),
         ("empty", "finished"),
     ],
 )

@@ -74,12 +74,11 @@ def test_a_finished_run_is_said_to_be_finished(evoframe: Evoframe, toy: list[str
 
 @pytest.mark.parametrize(
     ("directory", "message"),
-    [("nowhere", "Error: nowhere: "), (".", "Error: .: ")],
+    [("nowhere", "Error: nowhere: does not exist"), (".", "Error: .: not a run directory: no config.toml")],
 )
 def test_what_is_no_run_is_refused(evoframe: Evoframe, directory: str, message: str) -> None:
     refused = evoframe("resume", directory)
     assert (refused.returncode, refused.stderr.startswith(message)) == (2, True)
-    assert "config.toml" in refused.stderr
 
 
 _FULL_DISK = """
@@ -183,4 +182,4 @@ def test_processes_cannot_import_a_plugin_of_a_file(evoframe: Evoframe, toy: lis
 def test_a_finished_run_needs_no_plugin_to_be_said_to_be_finished(evoframe: Evoframe, toy: list[str]) -> None:
     assert evoframe("run", *toy, "toy.toml", "--set", "simulator=toy-varied", "--out", "r").returncode == 0
     again = evoframe("resume", "r")
-    assert (again.returncode, again.stderr) == (0, "r: the run is finished\n")
+    assert (again.returncode, again.stderr.startswith("r: the run is finished;")) == (0, True)

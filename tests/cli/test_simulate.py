@@ -184,7 +184,7 @@ def test_json_has_an_entry_for_each_design_of_all_files(evoframe: Evoframe, tmp_
     assert energies == {**lengths, "objective": ["energy"] * 3, "unit": ["J"] * 3}
     command.remove("--json")
     header, first, *_ = evoframe(*command, "--set", "objective=energy", **surroundings).stdout.splitlines()
-    assert header.split() == ["body", "score"]
+    assert header.split() == ["design", "score"]
     assert first.split() == ["two.toy[0]", "2", "J"]
 
 
@@ -217,7 +217,7 @@ ZERO = np.zeros(CELLS)
 @pytest.mark.parametrize(
     ("write", "message"),
     [
-        (None, "No such file"),
+        (None, "does not exist"),
         (Path.mkdir, "config.toml"),
         (lambda path: path.write_bytes(GOLDEN.read_bytes()[:5000]), ".npz"),
         (written("material.npy", b"1, 1, 3"), "EOF"),

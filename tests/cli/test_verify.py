@@ -98,7 +98,7 @@ class TestRun:
 
     def test_that_is_no_run_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
         (tmp_path / "empty").mkdir()
-        refused = evoframe("verify", "empty", "nowhere")
+        refused = evoframe("verify", "empty")
         assert refused.returncode == 2
         assert refused.stderr.startswith("Error: empty: ")
         assert "config.toml" in refused.stderr

@@ -18,7 +18,7 @@ def test_a_champion_has_the_same_score_as_in_its_run(
     toy_config: Load, toy_plugins: Plugins, tmp_path: Path
 ) -> None:
     made = run(toy_config(), out=tmp_path / "run")
-    job = read_job(made.directory, None, (), toy_plugins, runs=True)
+    job = read_job(made.directory, None, (), toy_plugins)
     assert [score.value for score in simulate_job(job)] == [made.champion().score]
 
 

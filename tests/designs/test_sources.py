@@ -124,7 +124,7 @@ class TestRun:
         return run(varied, out=tmp_path / "run", plugins=plugins)
 
     def test_stands_for_its_champion_as_it_was_simulated(self, plugins: Plugins, finished: Run) -> None:
-        job = read_job(finished.directory, None, [], plugins, runs=True)
+        job = read_job(finished.directory, None, [], plugins)
         assert job.run == finished
         assert job.score == finished.champion().score
         assert job.labels == (str(finished.directory),)
@@ -145,29 +145,24 @@ class TestRun:
     ) -> None:
         expected = finished.champion().score if same else None
         for path in (finished.directory, finished.directory / "champion.json"):
-            assert read_job(path, None, overrides, plugins, runs=True).score == expected
+            assert read_job(path, None, overrides, plugins).score == expected
 
     def test_is_simulated_with_a_given_preset(
         self, plugins: Plugins, finished: Run, varied: str, toy_file: Path
     ) -> None:
         for path in (finished.directory, finished.directory / "champion.json"):
-            job = read_job(path, str(toy_file), [], plugins, runs=True)
+            job = read_job(path, str(toy_file), [], plugins)
             assert job.config.simulator.name == "toy-product"
             assert job.score is None
-
-    def test_is_not_accepted_in_place_of_a_file(self, plugins: Plugins, finished: Run, varied: str) -> None:
-        with pytest.raises(InputError, match=r"directory; .*champion\.json$") as caught:
-            read_job(finished.directory, varied, [], plugins)
-        assert caught.value.source == str(finished.directory)
 
     @pytest.mark.parametrize("name", ["nowhere", "nowhere.json", "no\0where", "n" * 5000])
     def test_that_does_not_exist_is_refused(self, plugins: Plugins, tmp_path: Path, name: str) -> None:
         with pytest.raises(InputError, match=r"(where|nnn).*: "):
-            read_job(tmp_path / name, None, [], plugins, runs=True)
+            read_job(tmp_path / name, None, [], plugins)
 
     def test_in_a_directory_without_a_run_is_refused(self, plugins: Plugins, tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"config\.toml") as caught:
-            read_job(tmp_path, None, [], plugins, runs=True)
+            read_job(tmp_path, None, [], plugins)
         assert caught.value.source == str(tmp_path)
 
     def test_whose_champion_lacks_a_role_is_refused(self, plugins: Plugins, finished: Run) -> None:

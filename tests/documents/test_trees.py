@@ -38,17 +38,17 @@ def test_swapping_the_trees_gives_the_same_keys(first: dict[str, object], second
         (
             {"run": {}, "weights": [1]},
             [
-                "run.seed: 1 then, 'nothing' now",
+                "run.seed: 1 then, not set now",
                 "weights: [1, 2] then, [1] now",
-                "run: 'nothing' then, {} now",
+                "run: not set then, {} now",
             ],
         ),
         (
             {"run": 3, "weights": [1, 2], "more": "x"},
             [
-                "run.seed: 1 then, 'nothing' now",
-                "run: 'nothing' then, 3 now",
-                "more: 'nothing' then, 'x' now",
+                "run.seed: 1 then, not set now",
+                "run: not set then, 3 now",
+                "more: not set then, 'x' now",
             ],
         ),
     ],

@@ -195,7 +195,7 @@ def test_no_key_of_a_grid_is_named_like_a_column(toy_study: Read, column: str) -
 def test_a_study_that_does_not_exist_is_named(toy_plugins: Any) -> None:
     with pytest.raises(ConfigurationError, match=r"nowhere\.toml"):
         read_study("nowhere.toml", (), toy_plugins)
-    with pytest.raises(ConfigurationError, match=r"'papre'.*'paper'"):
+    with pytest.raises(ConfigurationError, match=r"papre: .*'paper'"):
         read_study("papre", (), toy_plugins)
 
 

@@ -90,6 +90,7 @@ def files(directory: Path) -> None:
 MISTAKES = [  # without those that click reports in its own words
     "run papre",
     "run small",
+    "run grid.toml",
     "run nowhere.toml",
     "run bad.toml",
     "run syntax.toml",
@@ -116,6 +117,7 @@ MISTAKES = [  # without those that click reports in its own words
     "resume empty",
     "resume broken",
     "simulate nowhere.npz",
+    "simulate quick",
     "simulate letter.npz",
     "simulate code.npz",
     "simulate champion.json",
@@ -132,6 +134,7 @@ MISTAKES = [  # without those that click reports in its own words
     "study papre",
     "study quick",
     "study grid.toml",
+    "study toy.toml",
     "study small --import rows.csv",
     "study small --out full",
     "doctor nowhere",

@@ -78,7 +78,7 @@ def open_npz(path: Path, names: Sequence[str]) -> Iterator[list[PackedArray]]:
         OSError: The file cannot be read.
         InputError: The file is not an ``.npz`` file, or the array named by ``key`` is missing or unusable.
     """
-    with _rejecting_damage(f"expected an .npz file with {' and '.join(names)}, found something else"):
+    with _rejecting_damage(f"not an .npz file with the arrays {' and '.join(names)}"):
         archive = zipfile.ZipFile(path)
     with archive:
         yield [_packed_array(archive, name, names) for name in names]

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
+from evoframe.cli.sources import RUN_OR_FILE
 from evoframe.cli.writing import STDOUT, write_file
 from evoframe.designs import export_job, read_job
 
@@ -21,7 +22,7 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("source", metavar="RUN|FILE", type=click.Path(path_type=Path))
+@click.argument("source", metavar="RUN|FILE", type=RUN_OR_FILE)
 @click.option(
     "--to", "format_", metavar="FORMAT", required=True, help="File format; the simulator vox writes vxa."
 )
@@ -50,7 +51,7 @@ def export(
     A RUN is the directory of a run, for its champion. A FILE is any file that evoframe simulate reads, with
     one design. Settings that the format cannot express are listed on standard error.
     """
-    job = read_job(source, preset, overrides, plugins_of(ctx), runs=True)
+    job = read_job(source, preset, overrides, plugins_of(ctx))
     exported = export_job(job, format_)
     for entry in exported.left_out:
         click.echo(f"Warning: not exported: {entry}", err=True)

@@ -9,9 +9,15 @@ import click
 from rich.table import Table
 
 from evoframe.cli.context import common_options, output, plugins_of
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
 from evoframe.registry import Plugins
 
 __all__ = ["plugins"]
+
+_SETTINGS = {kind: key for key, kind in COMPONENTS.items()} | {
+    kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
+}
+"""Kind of component -> the key that chooses it in a configuration."""
 
 
 @click.group()
@@ -62,10 +68,12 @@ def _document(found: Plugins) -> dict[str, Any]:
 
 
 def _table(found: Plugins) -> Table:
-    table = Table("kind", "name", "description", "distribution", "version", box=None, header_style="bold")
+    table = Table("setting", "name", "description", "distribution", "version", box=None, header_style="bold")
     for offer in _sorted(found):
         [what, *_] = (offer.component.__doc__ or "").strip().splitlines() or [""]
-        table.add_row(offer.kind, offer.name, what, offer.source.distribution, offer.source.version)
+        table.add_row(
+            _SETTINGS[offer.kind], offer.name, what, offer.source.distribution, offer.source.version
+        )
     return table
 
 

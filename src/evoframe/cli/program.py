@@ -79,6 +79,10 @@ class _Program(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
+        except click.NoSuchOption as error:
+            from evoframe.cli.unknown_options import with_hint  # noqa: PLC0415 - reads a preset
+
+            raise with_hint(error) from error
         except EvoframeError as error:
             raise _failure(ctx, error) from error
         except KeyboardInterrupt as interrupt:

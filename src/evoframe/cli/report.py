@@ -8,6 +8,7 @@ import click
 
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.cli.context import common_options, correction_option, is_quiet, needing_extra, plugins_of
+from evoframe.cli.sources import RUN_OR_STUDY
 from evoframe.errors import InputError
 
 __all__ = ["report"]
@@ -21,12 +22,12 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("directories", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("directories", metavar="RUN|STUDY...", nargs=-1, required=True, type=RUN_OR_STUDY)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Directory to write to; only with one DIR.  [default: DIR/report]",
+    help="Directory to write to; only with one RUN or STUDY.  [default: RUN/report or STUDY/report]",
 )
 @correction_option
 @common_options
@@ -36,7 +37,7 @@ def report(
 ) -> None:
     """Write the report of a run or study: figures, tables, conclusions and an interactive page.
 
-    DIR is the directory of a run or study, which need not be finished. The report of a study compares the
+    RUN or STUDY is a directory; the run or study need not be finished. The report of a study compares the
     values of the grid's last key, separately for each combination of the other keys, by two measures: the
     score of the best pair, and the fitness. The page report.html contains everything in one file.
     """
@@ -45,7 +46,7 @@ def report(
 
         write = room.report
     if out is not None and len(directories) > 1:
-        raise InputError(f"expected one DIR, found {len(directories)}", source=f"--out {out}")
+        raise InputError(f"expected one RUN or STUDY, found {len(directories)}", source=f"--out {out}")
     for directory in directories:
         written = write(directory, out=out, correction=correction, plugins=plugins_of(ctx))
         if is_quiet(ctx):

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import click
 
-from evoframe.cli.context import common_options, plugins_of, set_option, workers_option
+from evoframe.cli.context import command, common_options, plugins_of, set_option, workers_option
 from evoframe.cli.playing import play, show_end
+from evoframe.cli.sources import RUN_OR_STUDY
 from evoframe.cli.study import study
 from evoframe.config import Layer
 from evoframe.record import open_run
@@ -25,7 +26,7 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("directory", metavar="RUN|STUDY", type=click.Path(path_type=Path))
+@click.argument("directory", metavar="RUN|STUDY", type=RUN_OR_STUDY)
 @click.option(
     "--allow-different-versions",
     is_flag=True,
@@ -62,7 +63,8 @@ def resume(
             unverified = run.verification() is None
             if settings or unverified:  # refuses settings that differ from those of the run
                 config = configuration_of(run, settings, plugins)
-            click.echo(f"{directory}: the run is finished", err=True)
+            todo = "" if unverified else f"; for figures and a page: {command(ctx, 'report', directory)}"
+            click.echo(f"{directory}: the run is finished{todo}", err=True)
             if unverified:
                 run.read_all()
                 show_end(ctx, config, run)

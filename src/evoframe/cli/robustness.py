@@ -26,6 +26,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.progress import bar_columns
+from evoframe.cli.sources import RUN_STUDY_OR_FILE
 from evoframe.config import Layer
 from evoframe.messages import unit_factor, unit_name
 from evoframe.robustness import measure, read_candidates, refuse_another, setting_of, write_measurement
@@ -41,7 +42,7 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument("sources", metavar="[RUN|STUDY|FILE]...", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("sources", metavar="[RUN|STUDY|FILE]...", nargs=-1, type=RUN_STUDY_OR_FILE)
 @click.option(
     "--controllers",
     type=click.IntRange(1, 1_000_000),

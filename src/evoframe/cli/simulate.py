@@ -14,16 +14,15 @@ from rich.table import Table
 from evoframe.cli.context import (
     common_options,
     output,
-    plugins_of,
     preset_option,
     scored,
     set_option,
     workers_option,
 )
-from evoframe.cli.sources import with_runs_of_studies
+from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
-from evoframe.designs import Job, naming, read_job, simulate_job, trace_of
+from evoframe.designs import Job, naming, simulate_job, trace_of
 from evoframe.errors import InputError
 
 __all__ = ["simulate"]
@@ -37,9 +36,7 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument(
-    "files", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
-)
+@click.argument("files", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=RUN_STUDY_OR_FILE)
 @preset_option
 @set_option
 @click.option(
@@ -74,10 +71,7 @@ def simulate(
     A FILE is an .npz file with the arrays material ([X,Y,Z] or [N,X,Y,Z]; codes: 0 empty, 1 passive,
     3 contractile) and phase_cycles of the same shape, or a .vxa file, which contains its own settings.
     """
-    jobs = [
-        read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True)
-        for path in with_runs_of_studies(ctx, files)
-    ]
+    jobs = read_jobs(ctx, files, preset, [*overrides, *workers])
     if trace is not None:
         _write_trace(trace, jobs)
     scored_jobs = [(job, simulate_job(job)) for job in jobs]
@@ -122,7 +116,7 @@ def _are_lengths(bodies: list[_Body]) -> bool:
 
 def _table(bodies: list[_Body]) -> Table:
     table = Table(box=None, header_style="bold")
-    table.add_column("body", overflow="fold")
+    table.add_column("design", overflow="fold")
     table.add_column("score", overflow="fold")
     for body in bodies:
         step = f" at step {body.score.diverged_at}" if body.score.value is None else ""

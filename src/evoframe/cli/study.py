@@ -113,6 +113,8 @@ def study(
         click.echo(result.directory)
     else:
         output().print(_results(result))
+        done, total = len(result.rows), len(result.study.cells) * result.study.runs
+        click.echo(f"{done} of {total} runs are finished, in {result.directory}", err=True)
         if not result.left:
             click.echo(
                 f"\nNext, figures, tests and a page:\n  {command(ctx, 'report', result.directory)}", err=True

@@ -12,14 +12,13 @@ from rich.table import Table
 from evoframe.cli.context import (
     common_options,
     output,
-    plugins_of,
     preset_option,
     set_option,
     workers_option,
 )
-from evoframe.cli.sources import with_runs_of_studies
+from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
 from evoframe.config import Layer
-from evoframe.designs import Job, keep_of_job, read_job, verdict, verify_job
+from evoframe.designs import Job, keep_of_job, verdict, verify_job
 from evoframe.messages import quantity
 from evoframe.record import Finding, Verification
 
@@ -34,9 +33,7 @@ Examples:
 
 
 @click.command(epilog=_EPILOG)
-@click.argument(
-    "sources", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
-)
+@click.argument("sources", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=RUN_STUDY_OR_FILE)
 @preset_option
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON with full precision.")
@@ -57,10 +54,7 @@ def verify(
     --set change the simulation. A STUDY is the directory of a study, for its runs. A FILE is any file that
     evoframe simulate reads.
     """
-    jobs = [
-        read_job(path, preset, [*overrides, *workers], plugins_of(ctx), runs=True)
-        for path in with_runs_of_studies(ctx, sources)
-    ]
+    jobs = read_jobs(ctx, sources, preset, [*overrides, *workers])
     found = [(job, verify_job(job)) for job in jobs]
     if as_json:
         labelled = [pair for job, made in found for pair in zip(job.labels, made, strict=True)]

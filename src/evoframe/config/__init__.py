@@ -1,6 +1,7 @@
 """Configurations: presets, files and overrides, resolved into one checked value."""
 
 from evoframe.config.comments import commented, starter
+from evoframe.config.hints import settings_like
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
 from evoframe.config.resolve import load_config, named_simulator, resolve_layers
 
@@ -16,5 +17,6 @@ __all__ = [
     "preset_names",
     "read_layers",
     "resolve_layers",
+    "settings_like",
     "starter",
 ]

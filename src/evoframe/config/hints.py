@@ -8,13 +8,14 @@ from typing import Any
 
 import attrs
 
+from evoframe.config.layers import read_layers
 from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, PluginSettings, RunSettings
 from evoframe.documents import Fault, Tree, leaves, option_names
 from evoframe.errors import ConfigurationError
 from evoframe.messages import suggestion
 from evoframe.registry import Plugins
 
-__all__ = ["SECTIONS", "known_keys", "similar_keys", "unknown_key", "with_hints"]
+__all__ = ["SECTIONS", "known_keys", "settings_like", "similar_keys", "unknown_key", "with_hints"]
 
 SECTIONS = ("run", "populations", *COMPONENTS, "plugins")
 """The top-level keys of a configuration."""
@@ -36,6 +37,11 @@ def known_keys(tree: Tree, plugins: Plugins) -> list[str]:
                 path = f"populations.{role}.{key}"
                 keys += [path, *_component_keys(path, kind, table.get(key), plugins)]
     return keys
+
+
+def settings_like(word: str, plugins: Plugins) -> list[str]:
+    """Return the keys of the preset ``paper`` that *word* may mean, at most four."""
+    return similar_keys(word, known_keys(read_layers("paper").merged(), plugins))[:_MOST_HINTS]
 
 
 def similar_keys(key: str, known: Sequence[str]) -> list[str]:

@@ -13,7 +13,7 @@ import attrs
 from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files import parsed_toml, read_text
+from evoframe.files import exists, parsed_toml, read_text
 from evoframe.messages import found, suggestion
 
 __all__ = [
@@ -175,8 +175,8 @@ class _Source:
 
 def _chain(name: str, relative_to: Path, seen: tuple[_Source, ...]) -> list[Layer]:
     """Return the layer of a preset or file, preceded by those that it extends."""
-    source = _source(name, relative_to, seen)
     try:
+        source = _source(name, relative_to, seen)
         text = source.text()
     except InputError as error:
         if seen:
@@ -201,9 +201,11 @@ def _source(name: str, relative_to: Path, seen: tuple[_Source, ...]) -> _Source:
     known, path = preset_names(), relative_to / name
     if name in known:
         return _Source(preset=name)
-    if not name.endswith(".toml") and not path.exists():
-        problem = f"there is no preset '{name}'{suggestion(name, known, 'presets')}; file names end in .toml"
-        raise _extends_error(seen[-1], problem) if seen else ConfigurationError(problem)
+    if not exists(path):
+        hint = suggestion(name, known, "presets")
+        if seen:
+            raise _extends_error(seen[-1], f"no such preset or file as {found(name)}{hint}")
+        raise ConfigurationError(f"no such preset or file{hint}", source=name)
     return _Source(path=path)
 
 

@@ -20,7 +20,7 @@ from evoframe.config import (
 from evoframe.contract import Design, RunConfig, SupportsReading, SupportsSettings
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_directory
-from evoframe.record import CHAMPION_FILE, CONFIG_FILE, Run, open_run, read_champion
+from evoframe.record import CONFIG_FILE, Run, open_run, read_champion
 from evoframe.registry import Plugins
 
 __all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
@@ -55,8 +55,6 @@ def read_job(
     preset: str | None,
     overrides: Sequence[str | Layer],
     plugins: Plugins,
-    *,
-    runs: bool = False,
 ) -> Job:
     """Read the designs of a source, and determine the configuration with which they are simulated.
 
@@ -70,7 +68,6 @@ def read_job(
         preset: Name of a preset, or path of a TOML file.
         overrides: ``key=value``, or layers, as for :func:`~evoframe.load_config`.
         plugins: The available plugins.
-        runs: Accept the directory of a run.
 
     Raises:
         InputError: The file cannot be read, or has an unexpected content.
@@ -79,8 +76,6 @@ def read_job(
     if isinstance(source, Run):
         return _of_run(source, preset, overrides, plugins)
     if is_directory(source):
-        if not runs:
-            raise InputError(f"is a directory; for a run, name {source / CHAMPION_FILE}", source=source)
         with open_run(source) as run:
             return _of_run(run, preset, overrides, plugins)
     read = _of_champion if source.suffix == ".json" else _of_file

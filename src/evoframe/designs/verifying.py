@@ -55,7 +55,7 @@ def verify(
     """
     overrides = layers_of({**settings, "executor.workers": workers})
     named = source if isinstance(source, Run) else Path(source)
-    job = read_job(named, preset, overrides, plugins or discover(), runs=True)
+    job = read_job(named, preset, overrides, plugins or discover())
     verifications = verify_job(job)
     keep_of_job(job, verifications)
     return verifications

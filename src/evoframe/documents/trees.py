@@ -46,7 +46,7 @@ class _Nothing:
     """Placeholder for a missing value; unequal to every value."""
 
     def __repr__(self) -> str:
-        return "'nothing'"
+        return "not set"
 
 
 _NOTHING = _Nothing()

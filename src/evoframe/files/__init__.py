@@ -3,6 +3,7 @@
 from evoframe.files.locks import LOCK_FILE, Lock, acquire_lock, locked, locked_after_others, released_on_error
 from evoframe.files.reading import (
     LARGEST_DOCUMENT,
+    exists,
     is_directory,
     is_file,
     parsed_json,
@@ -18,6 +19,7 @@ __all__ = [
     "LOCK_FILE",
     "Lock",
     "acquire_lock",
+    "exists",
     "is_directory",
     "is_file",
     "is_leftover",

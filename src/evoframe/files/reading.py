@@ -12,6 +12,7 @@ from evoframe.errors import EvoframeError, InputError
 
 __all__ = [
     "LARGEST_DOCUMENT",
+    "exists",
     "is_directory",
     "is_file",
     "parsed_json",
@@ -91,12 +92,22 @@ def is_file(path: Path) -> bool:
     Raises:
         InputError: The path cannot be accessed.
     """
+    return exists(path) and stat.S_ISREG(_mode(path))
+
+
+def exists(path: Path) -> bool:
+    """Return whether *path* exists.
+
+    Raises:
+        InputError: The path cannot be accessed.
+    """
     try:
-        return stat.S_ISREG(_mode(path))
+        _mode(path)
     except InputError as error:
         if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
             return False
         raise
+    return True
 
 
 def _mode(path: Path) -> int:

@@ -297,7 +297,8 @@ def _config(directory: Path) -> dict[str, Any]:
             f"leftover rollback journal: another program modified {DATABASE_FILE}", source=journal
         )
     if not path.is_file():
-        raise InputError(f"not a run directory: no {CONFIG_FILE}", source=directory)
+        problem = f"not a run directory: no {CONFIG_FILE}" if directory.exists() else "does not exist"
+        raise InputError(problem, source=directory)
     tables = parsed_toml(read_text(path, LARGEST_DOCUMENT), str(path))
     if tables.get("extends") is not False:
         found = repr(tables["extends"]) if "extends" in tables else "nothing"

@@ -126,7 +126,7 @@ class _Reader:
             yield _of_job(self._job(path))
 
     def _job(self, path: Path, own: Sequence[Layer] = ()) -> Job:
-        return read_job(path, self.preset, [*own, *self.overrides], self.plugins, runs=True)
+        return read_job(path, self.preset, [*own, *self.overrides], self.plugins)
 
     def _of_study(self, path: Path) -> Iterator[Part]:
         study = read_study(path / STUDY_FILE, (), self.plugins)

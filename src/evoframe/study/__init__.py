@@ -6,7 +6,7 @@ from evoframe.study.directory import is_study, runs_in
 from evoframe.study.estimate import Estimate
 from evoframe.study.gathered import IMPORTED, gather, imported_rows
 from evoframe.study.names import called, headings, name_of, title_of
-from evoframe.study.plan import Cell, Planned, Study, read_study, shown, study_names
+from evoframe.study.plan import Cell, Planned, Study, describes_study, read_study, shown, study_names
 from evoframe.study.pool import End
 from evoframe.study.progress import Status
 from evoframe.study.rows import CURVES_FILE, ROWS_FILE, Row, read_rows, row_of, score_curve, write_rows
@@ -28,6 +28,7 @@ __all__ = [
     "Watcher",
     "called",
     "claim",
+    "describes_study",
     "gather",
     "headings",
     "imported_rows",

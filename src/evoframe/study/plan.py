@@ -20,11 +20,12 @@ from evoframe.contract import RunConfig, unit_of
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError
 from evoframe.evolution import first_meetings
+from evoframe.files import exists
 from evoframe.messages import found, suggestion
 from evoframe.registry import Plugins, discover
 from evoframe.study.names import headings
 
-__all__ = ["Cell", "Planned", "Study", "read_study", "shown", "study_names"]
+__all__ = ["Cell", "Planned", "Study", "describes_study", "read_study", "shown", "study_names"]
 
 Settings: TypeAlias = tuple[tuple[str, Any], ...]
 """Dotted key and value, in the order of the grid."""
@@ -166,6 +167,15 @@ def study_names() -> list[str]:
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
 
+def describes_study(source: str | Path) -> bool:
+    """Return whether a file or preset has the keys of a study.
+
+    Raises:
+        ConfigurationError: It cannot be read.
+    """
+    return bool(_OWN_KEYS.keys() & read_layers(source).merged().keys())
+
+
 def read_study(
     source: str | Path, overrides: Iterable[str | Layer] = (), plugins: Plugins | None = None
 ) -> Study:
@@ -182,6 +192,10 @@ def read_study(
     """
     read = _with_overrides(_file_of(source), overrides)
     tree = read.merged()
+    if not _OWN_KEYS.keys() & tree.keys():
+        keys = " nor ".join(_OWN_KEYS)
+        problem = f"not a study: has neither {keys}; to run this configuration once: evoframe run {source}"
+        raise ConfigurationError(problem, source=source)
     for key, expected in _OWN_KEYS.items():
         if key not in tree:
             raise ConfigurationError(f"missing; expected {expected}", source=source, key=key)
@@ -226,12 +240,9 @@ def _file_of(source: str | Path) -> str | Path:
     if source in study_names():
         with_path: Any = files("evoframe.study").joinpath("studies", f"{source}.toml")
         return str(with_path)
-    if not str(source).endswith(".toml") and not Path(source).exists():
-        known = study_names()
-        raise ConfigurationError(
-            f"there is no study '{source}'{suggestion(str(source), known, 'studies')}; "
-            "the name of a file must end with .toml"
-        )
+    if not exists(Path(source)):
+        hint = suggestion(str(source), study_names(), "studies")
+        raise ConfigurationError(f"no such study or file{hint}", source=source)
     return source
 
 

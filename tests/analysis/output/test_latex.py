@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
-from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -13,7 +10,6 @@ from hypothesis import given, strategies as st
 
 from evoframe.analysis.output.latex import decimals, fixed, latex_table, p_cell, quartiles_cell
 
-PDFLATEX = shutil.which("pdflatex") or ""
 TABLE = pd.DataFrame(
     {"heading": ["one", "one", "two"], "name": ["a_b", "50% > x", "|c|"], "p": ["< 0.001", "0.500", "-"]}
 )
@@ -84,31 +80,3 @@ def test_without_a_spread_there_are_four_digits() -> None:
 @pytest.mark.parametrize(("p", "cell"), [(None, "-"), (0.0009, "< 0.001"), (0.0123, "0.012"), (1.0, "1.000")])
 def test_a_p_value_has_three_decimals(p: float | None, cell: str) -> None:
     assert p_cell(p) == cell
-
-
-@pytest.mark.skipif(not PDFLATEX, reason="pdflatex is not installed")
-def test_tables_compile_in_one_column(tmp_path: Path) -> None:
-    wide = pd.DataFrame({f"a long title {n}": [1.0, 2.0] for n in range(20)})
-    long = pd.DataFrame({"heading": ["x"] * 120, "name": [f"$ & # _ {n}" for n in range(120)]})
-    for name, latex in (
-        ("wide", latex_table(wide)),
-        ("long", latex_table(long, by=["heading"])),
-        ("wrapped", latex_table(TABLE.replace("a_b", "a > b " * 30), by=["heading"], wrapped="name")),
-        ("empty", latex_table(TABLE[:0])),
-    ):
-        (tmp_path / f"{name}.tex").write_text(latex)
-    (tmp_path / "all.tex").write_text(
-        r"\documentclass[twocolumn]{article}\usepackage{array,booktabs,graphicx}\begin{document}"
-        r"\begin{table}\centering\input{wide}\caption{x}\end{table}\input{long}\input{wrapped}\input{empty}"
-        r"\end{document}"
-    )
-    made = subprocess.run(
-        [PDFLATEX, "-interaction=nonstopmode", "-halt-on-error", "all.tex"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        errors="replace",
-        check=False,
-    )
-    assert made.returncode == 0, made.stdout
-    assert "Overfull" not in made.stdout

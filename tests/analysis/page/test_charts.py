@@ -66,7 +66,7 @@ def test_the_lines_of_a_run_match_its_record(tmp_path: Path) -> None:
             assert lines[f"{name}: {statistic} fitness"] == pytest.approx(
                 [1000 * row[statistic] for row in rows]
             )
-    best = lines["best score so far"]
+    best = lines["best pair so far"]
     assert len(best) == 3
     assert (np.diff(best) >= 0).all()
     assert best[-1] == pytest.approx(1000 * made.champion().score)

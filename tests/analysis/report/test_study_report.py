@@ -48,7 +48,7 @@ def test_the_conclusions_are_those_of_the_comparisons(plugins: Plugins) -> None:
     draft = draft_of_study(data, plugins, "none")
     lead = written("lead.txt", data=data)
     paragraphs = [f"s: {lead}"]
-    for each, name in zip(comparisons(data, "none"), ("best score", "best fitness"), strict=True):
+    for each, name in zip(comparisons(data, "none"), ("score of the best pair", "best fitness"), strict=True):
         assert each.comparison is not None
         said = conclusion(each.comparison, f"the {name}")
         paragraphs.append(f"s, {name} by aggregator: {each.comparison.ranking}\n{said}")
@@ -76,7 +76,7 @@ def test_a_single_group_and_single_runs_are_not_tested(
     [section] = [section for section in draft.sections if section.title == "s"]
     texts = [block.text for block in section.blocks if isinstance(block, Words)]
     assert len(texts) == 2
-    for text, name in zip(texts, ("best score", "best fitness"), strict=True):
+    for text, name in zip(texts, ("score of the best pair", "best fitness"), strict=True):
         assert name in text.lower()
         assert reason in text
     assert not re.search(r"\bp [<=>]|H =|A12", draft.words)

@@ -9,21 +9,25 @@ import pandas as pd
 from evoframe.analysis.data.studies import Yardstick
 from evoframe.messages import unit_factor, unit_name
 
-__all__ = ["CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "in_unit"]
+__all__ = ["AXIS_NAMES", "CURVE_CAPTIONS", "CURVE_NAMES", "NAMES", "axis_title", "in_unit"]
 
-NAMES: Mapping[Yardstick, str] = {"score": "best score", "fitness": "best fitness"}
+NAMES: Mapping[Yardstick, str] = {"score": "score of the best pair", "fitness": "best fitness"}
+"""Names in sentences and headings."""
 
-CURVE_NAMES: Mapping[Yardstick, str] = {"score": "best score so far", "fitness": "best fitness"}
+AXIS_NAMES: Mapping[Yardstick, str] = {"score": "best pair", "fitness": "best fitness"}
+"""Titles of axes, which have less space."""
+
+CURVE_NAMES: Mapping[Yardstick, str] = {"score": "best pair so far", "fitness": "best fitness"}
 """Titles of axes of values over generations; the score of the best pair never decreases."""
 
 CURVE_CAPTIONS: Mapping[Yardstick, str] = {
-    "score": "Best score so far, after each generation",
+    "score": "Score of the best pair so far, after each generation",
     "fitness": "Best fitness in each generation",
 }
 
 
 def axis_title(name: str, unit: str) -> str:
-    """Return the title of an axis or column with its unit, as in ``best score (mm)``."""
+    """Return the title of an axis or column with its unit, as in ``best fitness (mm)``."""
     return f"{name} ({unit_name(unit)})" if unit else name
 
 

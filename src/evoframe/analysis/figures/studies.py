@@ -15,7 +15,7 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import CURVE_NAMES, NAMES, axis_title
+from evoframe.analysis.data.units import AXIS_NAMES, CURVE_NAMES, axis_title
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, break_lines, row_height, text_width
@@ -159,7 +159,7 @@ def finals(view: View, yardstick: Yardstick, unit: str = "", comparison: Compari
     axes.locator_params(axis="x", nbins=6)  # with more, long labels would nearly touch
     axes.set_yticks(range(len(groups)), labels)
     axes.set_ylim(len(groups) - 0.5, -0.5)  # the first group at the top
-    axes.set(xlabel=axis_title(NAMES[yardstick], unit), ylabel=break_lines(view.key, height, 8))
+    axes.set(xlabel=axis_title(AXIS_NAMES[yardstick], unit), ylabel=break_lines(view.key, height, 8))
     return figure
 
 

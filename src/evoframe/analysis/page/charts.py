@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from plotly.graph_objects import Box, Figure, Scatter
 
 from evoframe.analysis.data.studies import View, Yardstick
-from evoframe.analysis.data.units import NAMES, axis_title
+from evoframe.analysis.data.units import AXIS_NAMES, axis_title
 from evoframe.analysis.figures.lines import Line
 from evoframe.analysis.statistics.groups import FEWEST
 from evoframe.messages import unit_factor
@@ -95,7 +95,7 @@ def finals_chart(view: View, yardstick: Yardstick, unit: str = "") -> Figure:
             points = {"boxpoints": "all", "jitter": 0.5, "pointpos": -1.6, "marker_size": 4}
             trace = Box(x=[called], y=[_shortened(scaled)], name=called, **points, **own)
         traces.append(trace.update(meta={"color": number}))
-    plot = _with_layout(Figure(traces), f"{view.key}: runs", axis_title(NAMES[yardstick], unit))
+    plot = _with_layout(Figure(traces), f"{view.key}: runs", axis_title(AXIS_NAMES[yardstick], unit))
     plot.update_xaxes(range=[-0.7, len(traces) - 0.5])  # keeps points off the edges
     return plot.update_layout(showlegend=False, hovermode="closest")
 

@@ -17,7 +17,7 @@ def conclusion(comparison: Comparison, measure: str, values: tuple[str, str] = (
 
     Args:
         comparison: The comparison.
-        measure: The compared measure, as in ``the best score``.
+        measure: The compared measure, as in ``the best fitness``.
         values: Noun for a value of a group, singular and plural.
     """
     smallest = min(group.n for group in comparison.groups)
