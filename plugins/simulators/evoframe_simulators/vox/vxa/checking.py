@@ -8,8 +8,9 @@ from collections.abc import Collection, Mapping
 from lxml import etree
 
 from evoframe_simulators.vox.vxa.document import shorten
+from evoframe_simulators.vox.vxa.faults import Faults
 from evoframe_simulators.vox.vxa.schema import VXA, Role, Schema
-from evoframe_simulators.vox.vxa.sections import Section, Unsupported, parse_number
+from evoframe_simulators.vox.vxa.sections import Section, parse_number
 
 __all__ = ["collect_unsupported"]
 
@@ -18,14 +19,14 @@ _MATERIAL = "VXC/Palette/Material"
 
 
 def collect_unsupported(
-    section: Section, used: Collection[int], unsupported: Unsupported, schema: Schema = VXA
+    section: Section, used: Collection[int], faults: Faults, schema: Schema = VXA
 ) -> None:
     """Collect all tags of a file that enable features that vox does not simulate (see :mod:`.vxa.schema`).
 
     Args:
         section: The file, or a section of it.
         used: Positions in the palette, from 1, of the materials in the body; others are not checked.
-        unsupported: Collects the tags; materials and regions are numbered.
+        faults: Collects the tags; materials and regions are numbered.
         schema: Schema of the section.
     """
     seen: Counter[str] = Counter()
@@ -39,10 +40,10 @@ def collect_unsupported(
             place = f"{place} {seen[tag]}"
         role = schema.get(tag)
         if isinstance(role, Mapping):
-            collect_unsupported(Section(element, place), used, unsupported, role)
+            collect_unsupported(Section(element, place), used, faults, role)
         elif not _is_accepted(element, role):
             value = shorten(" ".join(str(text) for text in element.itertext()))
-            unsupported.add(place, value, "unknown tag" if role is None else "")
+            faults.unsupported(place, value, "unknown tag" if role is None else "")
 
 
 def _is_accepted(element: etree._Element, role: Role | float | None) -> bool:

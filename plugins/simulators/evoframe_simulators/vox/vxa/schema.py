@@ -1,15 +1,12 @@
-"""Tags of the dialect, and the treatment of each in reading.
+"""Tags of VXA files, and the treatment of each in reading.
 
-Files are interpreted like the fork ``reconfigurable_organisms`` of the old Voxelyze does. Facts about this
-engine used here and in :mod:`~evoframe_simulators.vox.vxa.reading`, in addition to docs/physics.md:
+Facts about the engines used here and in :mod:`~evoframe_simulators.vox.vxa.reading`, in addition to
+docs/physics.md and :mod:`.dialects`:
 
-- The engine takes the first of two equal tags where one is expected; a file with duplicates is rejected.
-- In place of a missing section the engine uses defaults that differ from those of missing tags: without
-  ``Gravity`` there are gravity and a floor, without ``Damping`` another slow damping. Such files fail.
-- Under water (``FluidEnvironment`` 1) gravity and floor do not change.
-
-Evosoro's engines differ: ``_voxcad_land_water`` disables gravity and floor under water, and ``_voxcad`` caps
-the size of a voxel at 1 + ``GrowthAmplitude`` of the nominal one, so that 0 prevents expansion.
+- An engine takes the first of two equal tags where one is expected; a file with duplicates is rejected.
+- In place of a missing section it uses defaults that differ from those of missing tags: without ``Gravity``
+  there are gravity and a floor, without ``Damping`` another slow damping.
+- The fork only uses ``GrowthAmplitude`` together with sizes of single voxels, which are rejected.
 
 Rule for tags that vox does not simulate: a tag in the schema that enables a feature is rejected unless its
 value is "off"; an unknown tag is rejected unless all its contents are empty, zero or ``false``. One error
@@ -66,13 +63,17 @@ MATERIAL: Final[Schema] = {
         "IsPacemaker": IDLE,
         "uStatic": READ,
         "uDynamic": READ,
+        # Of voxcraft: materials that are held, and details of features that are off.
+        **dict.fromkeys(("Fixed", "LockZ", "sticky"), OFF),
+        **dict.fromkeys(("Cilia", "isMeasured", "isTarget", "isPaceMaker", "PaceMakerPeriod"), IDLE),
+        **dict.fromkeys(("signalValueDecay", "signalTimeDelay", "inactivePeriod"), IDLE),
     },
 }
 """Schema of a ``Material`` of the palette."""
 
 REGION: Final[Schema] = {
     **dict.fromkeys(("PrimType", "X", "Y", "Z", "dX", "dY", "dZ", "DofFixed", "Fixed"), READ),
-    **dict.fromkeys(("Radius", "R", "G", "B", "alpha"), IDLE),
+    **dict.fromkeys(("Name", "Radius", "R", "G", "B", "alpha"), IDLE),
     **{f"{what}{axis}": OFF for what in ("Force", "Torque", "Displace", "AngDisplace") for axis in "XYZ"},
 }
 """Schema of an ``FRegion``: voxels that are clamped, pushed or moved."""
@@ -100,6 +101,7 @@ _SIMULATOR: Final[Schema] = {
     },
     "StopCondition": {
         "StopConditionType": READ,
+        "StopConditionFormula": READ,
         "StopConditionValue": READ,
         "InitCmTime": READ,
         "ActuationStartTime": READ,
@@ -111,13 +113,25 @@ _SIMULATOR: Final[Schema] = {
     "GA": IDLE,
     "SimStop": IDLE,
     "ParentLifetime": IDLE,
-    "MinTempFact": 0.1,
+    "MinTempFact": READ,
     # For variable stiffness and voxels that seek a source; both require tags that are rejected below.
     "MaxTempFactChange": IDLE,
     "DampEvolvedStiffness": IDLE,
     "MaxStiffnessChange": IDLE,
     "MinElasticMod": IDLE,
     "MaxElasticMod": IDLE,
+    # Of voxcraft.
+    "AttachDetach": {
+        "EnableCollision": READ,
+        "EnableAttach": OFF,
+        "EnableDetach": OFF,
+        **dict.fromkeys(("CollisionMode", "watchDistance", "boundingRadius", "SafetyGuard"), IDLE),
+        **dict.fromkeys(("AttachCondition", "KeepJustOneIfManyHaveSameGroupPosition"), IDLE),
+    },
+    "EnableExpansion": READ,
+    **dict.fromkeys(("EnableCilia", "EnableSignals", "SecondaryExperiment", "SelfReplication"), OFF),
+    **dict.fromkeys(("RecordHistory", "FitnessFunction", "ThoroughTest", "EnableTargetCloseness"), IDLE),
+    **dict.fromkeys(("SavePositionOfAllVoxels", "MaxDistInVoxelLengthsToCountAsPair"), IDLE),
 }
 
 _ENVIRONMENT: Final[Schema] = {
@@ -164,7 +178,7 @@ _ENVIRONMENT: Final[Schema] = {
         "RepolarizationsPerTempCycle": IDLE,
     },
     "LightSource": IDLE,
-    "GrowthAmplitude": OFF,
+    "GrowthAmplitude": READ,  # limits sizes in evosoro
     "GrowthSpeedLimit": IDLE,
     "GreedyGrowth": IDLE,
     "GreedyThreshold": IDLE,
@@ -176,12 +190,10 @@ _ENVIRONMENT: Final[Schema] = {
     "SavePassiveData": IDLE,
     "NormDistByVol": IDLE,
     "NormalizationExponent": IDLE,
-    "StickyFloor": OFF,
+    "StickyFloor": READ,
     "BlockPushing": OFF,
     "BlockMaterial": IDLE,
-    "ContractOnly": OFF,
-    "ExpandOnly": OFF,
-    "FallingProhibited": OFF,  # ends the simulation when a body falls over
+    **dict.fromkeys(("ContractOnly", "ExpandOnly", "FallingProhibited"), READ),
     "DampEvolvedStiffness": IDLE,
     "Sources": UNSUPPORTED,
     "FloorRadius": UNSUPPORTED,
@@ -200,11 +212,13 @@ _STRUCTURE: Final[Schema] = {
     **dict.fromkeys(("Stiffness", "StressAdaptationRate", "PressureAdaptationRate"), UNSUPPORTED),
     **dict.fromkeys(("VestibularContribution", "StressContribution", "PressureContribution"), IDLE),
     **{f"PreDamage{what}": IDLE for what in ("Roll", "Pitch", "Yaw", "Stress", "Pressure")},
+    **dict.fromkeys(("BaseCiliaForce", "ShiftCiliaForce"), IDLE),  # without cilia
 }
 
 VXA: Final[Schema] = {
     "Simulator": _SIMULATOR,
     "Environment": _ENVIRONMENT,
+    **dict.fromkeys(("GPU", "RawPrint"), IDLE),  # of voxcraft
     "VXC": {
         "Lattice": {
             "Lattice_Dim": READ,

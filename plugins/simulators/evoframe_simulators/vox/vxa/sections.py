@@ -12,7 +12,7 @@ from lxml import etree
 from evoframe import InputError
 from evoframe_simulators.vox.vxa.document import shorten
 
-__all__ = ["Section", "Unsupported", "parse_number"]
+__all__ = ["Section", "parse_number"]
 
 _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
@@ -23,29 +23,6 @@ def parse_number(text: str) -> float | None:
         return None
     value = float(text)
     return value if math.isfinite(value) else None
-
-
-@attrs.frozen
-class Unsupported:
-    """Features of a file that vox does not simulate, collected for one error."""
-
-    _found: list[str] = attrs.field(factory=list)
-
-    def add(self, place: str, value: str, why: str = "") -> None:
-        """Add the path of a tag, its value, and a reason if it is not obvious."""
-        self._found.append(f"{place} = {value}" + (f" ({why})" if why else ""))
-
-    def check(self) -> None:
-        """Reject the file if anything was added.
-
-        Raises:
-            InputError: Lists everything that was added.
-        """
-        if self._found:
-            found = "; ".join(self._found)
-            raise InputError(
-                f"uses features that vox does not simulate (change or remove these tags): {found}"
-            )
 
 
 @attrs.frozen
@@ -75,6 +52,14 @@ class Section:
             raise InputError(f"found {len(found)} times, expected once", key=self.at(tag))
         return Section(found[0], self.at(tag)) if found else None
 
+    def get(self, tag: str) -> Section:
+        """Return the subsection *tag*, without contents if it is missing.
+
+        Raises:
+            InputError: There is more than one.
+        """
+        return self.find(tag) or Section(etree.Element(tag), self.at(tag))
+
     def need(self, tag: str) -> Section:
         """Return the subsection *tag*.
 
@@ -83,7 +68,7 @@ class Section:
         """
         found = self.find(tag)
         if found is None:
-            raise InputError("missing section, required in every VXA file", key=self.at(tag))
+            raise InputError("missing section; a body cannot be read without it", key=self.at(tag))
         return found
 
     def count(self, tag: str) -> int:

@@ -1,4 +1,4 @@
-"""Body of a VXA file: layers of characters for materials, and of numbers for offsets."""
+"""Body of a VXA file: layers of encoded materials, and of numbers for offsets."""
 
 from __future__ import annotations
 
@@ -12,14 +12,16 @@ from numpy.typing import NDArray
 
 from evoframe import InputError
 from evoframe_simulators.vox.bodies import check_cycles
-from evoframe_simulators.vox.limits import MOST_CELLS
+from evoframe_simulators.vox.limits import LARGEST_CODE, MOST_CELLS
+from evoframe_simulators.vox.vxa.compression import decode_layer
 from evoframe_simulators.vox.vxa.document import shorten
-from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
 from evoframe_simulators.vox.vxa.sections import Section, parse_number
 
 __all__ = ["read_canvas", "read_material", "read_phase"]
 
 T = TypeVar("T", np.uint8, np.float64)
+
+_BEGINNING = 200  # characters of a layer in which blanks are looked for
 
 
 def read_canvas(structure: Section) -> tuple[int, int, int]:
@@ -35,13 +37,16 @@ def read_canvas(structure: Section) -> tuple[int, int, int]:
     return x, y, z
 
 
-def read_material(structure: Section, canvas: tuple[int, int, int], materials: int) -> NDArray[np.uint8]:
+def read_material(
+    structure: Section, canvas: tuple[int, int, int], materials: int, compression: str = "ASCII_READABLE"
+) -> NDArray[np.uint8]:
     """Return the materials of the cells, ``uint8[X, Y, Z]``.
 
     Args:
-        structure: Section with one layer of characters for each z, x fastest.
+        structure: Section with one layer for each z, x fastest.
         canvas: Number of cells along x, y and z.
         materials: Number of materials in the palette.
+        compression: Encoding of the layers, a key of :data:`~.compression.COMPRESSIONS`.
 
     Raises:
         InputError: Layers are missing or have another length, a material is not in the palette, or there are
@@ -49,15 +54,15 @@ def read_material(structure: Section, canvas: tuple[int, int, int], materials: i
     """
     rows = []
     for layer in _layers(structure.need("Data"), canvas):
-        cells = _text(layer)
-        if len(cells) != canvas[0] * canvas[1]:
-            raise InputError(f"found {len(cells)} cells, expected {canvas[0]} x {canvas[1]}", key=layer.place)
-        codes = np.frombuffer(cells.encode("utf-32-le"), "<u4").astype(np.int64) - FIRST_CHARACTER
-        wrong = np.flatnonzero((codes < 0) | (codes > materials))
+        try:
+            codes = decode_layer(_text(layer), compression, canvas[0] * canvas[1])
+        except InputError as error:
+            raise InputError(f"{error.problem}{_sides(canvas)}", key=layer.place) from error
+        wrong = np.flatnonzero((codes < 0) | (codes > min(materials, LARGEST_CODE)))
         if wrong.size:
             raise InputError(
-                f"cell {shorten(cells[wrong[0]])} has material {codes[wrong[0]]}, expected 0 (empty) to "
-                f"{materials}, the number of materials in the palette",
+                f"cell {wrong[0] + 1}{_shown(layer, compression, wrong[0])} has material {codes[wrong[0]]}, "
+                f"expected 0 (empty) to {materials}, the number of materials in the palette",
                 key=layer.place,
             )
         rows.append(codes.astype(np.uint8))
@@ -65,6 +70,15 @@ def read_material(structure: Section, canvas: tuple[int, int, int], materials: i
     if not material.any():
         raise InputError("has no voxels", key=structure.place)
     return material
+
+
+def _sides(canvas: tuple[int, int, int]) -> str:
+    return f" (X_Voxels x Y_Voxels = {canvas[0]} x {canvas[1]})"
+
+
+def _shown(layer: Section, compression: str, cell: int) -> str:
+    """Return the character of a cell for a message, if cells are characters."""
+    return f" {shorten(_text(layer)[cell])}" if compression == "ASCII_READABLE" else ""
 
 
 def read_phase(structure: Section, canvas: tuple[int, int, int]) -> NDArray[np.float64]:
@@ -81,7 +95,12 @@ def read_phase(structure: Section, canvas: tuple[int, int, int]) -> NDArray[np.f
         items = _text(layer).removesuffix(",")  # a comma may follow the last offset
         cells = items.count(",") + 1
         if cells != canvas[0] * canvas[1]:  # before creating the strings
-            raise InputError(f"found {cells} offsets, expected {canvas[0]} x {canvas[1]}", key=layer.place)
+            blanks = ", found blanks" if cells == 1 and len(items[:_BEGINNING].split()) > 1 else ""
+            raise InputError(
+                f"found {cells} {'offset' if cells == 1 else 'offsets'}, expected {canvas[0]} x {canvas[1]} "
+                f"with commas between them{blanks}",
+                key=layer.place,
+            )
         row = np.empty(cells)
         for n, item in enumerate(items.split(",")):
             offset = parse_number(item.strip())
