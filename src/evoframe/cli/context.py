@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -19,6 +19,8 @@ from evoframe.messages import quantity
 
 if TYPE_CHECKING:
     from evoframe.config import Layer
+    from evoframe.contract import Score
+    from evoframe.designs import Job
     from evoframe.registry import Plugins
 
 __all__ = [
@@ -36,6 +38,8 @@ __all__ = [
     "preset_option",
     "scored",
     "set_option",
+    "span",
+    "warn_overlooked",
     "workers_option",
 ]
 
@@ -130,6 +134,20 @@ def messages() -> Console:
 def scored(score: float | None, unit: str) -> str:
     """Return a score with its *unit*, as displayed."""
     return "diverged" if score is None else quantity(score, unit)
+
+
+def span(window: tuple[float, float] | None) -> str:
+    """Return the times between which a score is measured, as displayed; ``-`` for none."""
+    return "-" if window is None else f"{window[0]:.3g} s to {window[1]:.3g} s"
+
+
+def warn_overlooked(ctx: click.Context, job: Job, scores: Sequence[Score]) -> None:
+    """Warn if the designs of a job are simulated for longer than their objective looks at."""
+    from evoframe.designs import overlooked
+
+    found = overlooked(job.config, job.designs, scores)
+    if found is not None and not is_quiet(ctx):
+        click.echo(f"Warning: {job.path}: the objective '{job.config.objective.name}' {found}", err=True)
 
 
 def is_quiet(ctx: click.Context) -> bool:

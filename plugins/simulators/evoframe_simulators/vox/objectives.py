@@ -1,0 +1,60 @@
+"""Choice of the objective for bodies of files that contain their own settings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from evoframe_simulators.vox.regions import FixedRegion, fixed_mask
+from evoframe_simulators.vox.settings import VoxSettings
+
+__all__ = ["Motion", "motion_of", "objective_of"]
+
+Motion: TypeAlias = Literal["face", "tip", "body"]
+"""The point whose motion describes that of a body."""
+
+_HELD = FixedRegion(degrees_of_freedom=("x", "y", "z")).bits
+
+
+def objective_of(settings: VoxSettings, bodies: Iterable[NDArray[np.uint8]]) -> dict[str, Any]:
+    """Return the objective that fits bodies: the table ``objective`` of a configuration.
+
+    The displacement of the free face, or else of the tip, is measured from the first to the last step. If a
+    body is free, its center of mass is followed instead, from the start of the contraction on, which excludes
+    the motion by which the body settles on the floor.
+
+    Args:
+        settings: Settings of the simulation.
+        bodies: Materials of the bodies, each ``uint8[X, Y, Z]``; those without voxels do not matter.
+    """
+    motions = {motion_of(settings, material) for material in bodies if material.any()}
+    if motions in ({"face"}, {"tip"}):
+        [point] = motions
+        return {"name": f"{point}-yz", "every": 0.0, "first": 0, "last": -1}
+    after = settings.start_time if settings.start_time < settings.duration else 0.0
+    return {"name": "travel", "along": "xy", "every": 0.0, "after": after}
+
+
+def motion_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Motion:
+    """Return the point that moves with a body's deformation: ``body`` if no other point does.
+
+    A voxel is held if all its translations are fixed. ``body`` follows if no voxel is held, or if the free
+    face and the tip are held themselves.
+
+    Args:
+        settings: Settings of the simulation.
+        material: Materials of a body with voxels, ``uint8[X, Y, Z]``.
+    """
+    x, y, z = material.shape
+    present = material > 0
+    held = present & (fixed_mask(settings.fixed, (x, y, z)) & _HELD == _HELD)
+    if not held.any():
+        return "body"
+    face = np.flatnonzero(present.any(axis=(1, 2)))[-1]
+    if (present[face] & ~held[face]).any():
+        return "face"
+    tip = tuple(np.argwhere(present.transpose(2, 1, 0))[-1][::-1])  # the last voxel if x varies fastest
+    return "body" if held[tip] else "tip"
