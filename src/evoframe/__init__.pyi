@@ -19,6 +19,7 @@ from .contract.drawings import (
     NetworkLink as NetworkLink,
 )
 from .contract.optional import (
+    SupportsDialects as SupportsDialects,
     SupportsDuration as SupportsDuration,
     SupportsExemptions as SupportsExemptions,
     SupportsExport as SupportsExport,
@@ -53,6 +54,8 @@ from .contract.values import (
     BestPair as BestPair,
     Design as Design,
     Export as Export,
+    FileContents as FileContents,
+    FileOptions as FileOptions,
     Member as Member,
     Outcome as Outcome,
     Pair as Pair,

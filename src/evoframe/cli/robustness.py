@@ -26,7 +26,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.progress import bar_columns
-from evoframe.cli.sources import RUN_STUDY_OR_FILE
+from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, file_options_of, print_notes
 from evoframe.config import Layer
 from evoframe.messages import unit_factor, unit_name
 from evoframe.robustness import measure, read_candidates, refuse_another, setting_of, write_measurement
@@ -69,6 +69,7 @@ Examples:
 @click.option("--force", is_flag=True, help="Overwrite a measurement made with different settings.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON with all scores.")
 @correction_option
+@file_options
 @preset_option
 @set_option
 @workers_option
@@ -98,7 +99,12 @@ def robustness(
         from evoframe.analysis import robustness as analysis  # noqa: PLC0415 - takes a second, and an extra
         from evoframe.analysis.output.writing import prepare_directory  # noqa: PLC0415
     settings: list[str | Layer] = [*overrides, *workers]
-    candidates = read_candidates(sources, preset, settings, plugins_of(ctx), published=published)
+    options = file_options_of(ctx)
+    candidates = read_candidates(
+        sources, preset, settings, plugins_of(ctx), published=published, options=options
+    )
+    for path, notes in candidates.notes:
+        print_notes(ctx, path, notes)
     setting = setting_of(candidates, seed, controllers)
     directory = out or Path("robustness")
     if out is None and len(sources) == 1 and sources[0].is_dir():

@@ -22,7 +22,7 @@ from evoframe.cli.context import (
     warn_overlooked,
     workers_option,
 )
-from evoframe.cli.sources import RUN_STUDY_OR_FILE, files_of, read_jobs
+from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, files_of, read_jobs
 from evoframe.cli.writing import files_of_settings, force_option, refuse_inputs, write_file
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
@@ -41,6 +41,7 @@ Examples:
 
 @click.command(epilog=_EPILOG)
 @click.argument("files", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=RUN_STUDY_OR_FILE)
+@file_options
 @preset_option
 @set_option
 @click.option(
@@ -48,8 +49,9 @@ Examples:
     "as_json",
     is_flag=True,
     help="Print JSON with full precision: the lists labels, score, objective, unit, first_time and last_time "
-    "(s, between which the score is measured), diverged, diverged_at and missing (reason why there is no "
-    "score) with one entry for each design; if every unit is m, also displacement, equal to score.",
+    "(s, between which the score is measured), diverged, diverged_at, missing (reason why there is no "
+    "score) and dialect (by whose rules the file was read) with one entry for each design; if every unit is "
+    "m, also displacement, equal to score.",
 )
 @click.option(
     "--trace",
@@ -76,7 +78,9 @@ def simulate(
     A RUN is the directory of a run, or its champion.json: the champion is simulated with the run's settings.
     A STUDY is the directory of a study, for the champions of its runs.
     A FILE is an .npz file with the arrays material ([X,Y,Z] or [N,X,Y,Z]; codes: 0 empty, 1 passive,
-    3 contractile) and phase_cycles of the same shape, or a .vxa file, which contains its own settings.
+    3 contractile) and phase_cycles of the same shape; a .vxa file, which contains its own settings; a .vxd
+    file, which completes one; or a .vxc file, a body without settings. How a file was read is on standard
+    error.
 
     Unless --set or --preset choose an objective, a file with its own settings is scored from the first to
     the last step: a body that is held somewhere by the displacement of its free face, a free body by the
@@ -89,7 +93,14 @@ def simulate(
         write_file(trace, _trace(jobs), force=force, inputs=inputs)
     scored_jobs = [(job, simulate_job(job)) for job in jobs]
     bodies = [
-        _Body(label, score, job.config.objective.name, unit_of(job.config.objective.component), job.unscored)
+        _Body(
+            label,
+            score,
+            job.config.objective.name,
+            unit_of(job.config.objective.component),
+            job.unscored,
+            job.dialect,
+        )
         for job, scores in scored_jobs
         for label, score in zip(job.labels, scores, strict=True)
     ]
@@ -115,6 +126,7 @@ class _Body:
     objective: str
     unit: str
     unscored: str
+    dialect: str
 
     @property
     def times(self) -> tuple[float, float] | tuple[None, None]:
@@ -142,6 +154,7 @@ def _document(bodies: list[_Body]) -> dict[str, Any]:
         "diverged": [body.score.diverged_at is not None for body in bodies],
         "diverged_at": [body.score.diverged_at for body in bodies],
         "missing": [body.unscored or None for body in bodies],
+        "dialect": [body.dialect or None for body in bodies],
     }
     return {**document, "displacement": values} if _are_lengths(bodies) else document
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+import attrs
 import click
 
-from evoframe.cli.context import command, plugins_of
+from evoframe.cli.context import command, is_quiet, plugins_of
 from evoframe.config import Layer, preset_names
+from evoframe.contract import FileOptions
 from evoframe.designs import Job, read_job
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import exists, is_file
@@ -21,12 +23,20 @@ __all__ = [
     "RUN_OR_FILE",
     "RUN_OR_STUDY",
     "RUN_STUDY_OR_FILE",
+    "file_options",
+    "file_options_of",
     "files_of",
+    "print_notes",
     "read_jobs",
     "refuse_preset",
     "refuse_run_and_study",
     "with_runs_of_studies",
 ]
+
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_FILE_OPTIONS = f"{__name__}.file_options"  # in the context, since only the readers of files need them
 
 
 class _SourcePath(click.Path):
@@ -68,8 +78,54 @@ def with_runs_of_studies(ctx: click.Context, paths: Iterable[Path]) -> list[Path
     return found
 
 
+def file_options(function: F) -> F:
+    """Add ``--dialect`` and ``--base`` to a command that reads files with designs."""
+    for option in (
+        click.option(
+            "--base",
+            type=click.Path(path_type=Path, dir_okay=False),
+            expose_value=False,
+            callback=_keep_file_option,
+            metavar="BASE.vxa",
+            help="File that completes a .vxd or .vxc file.  [default for .vxd: base.vxa, or the only .vxa "
+            "file in its directory]",
+        ),
+        click.option(
+            "--dialect",
+            expose_value=False,
+            callback=_keep_file_option,
+            metavar="D",
+            help="Program by whose rules files are read: the simulator vox knows fork (the paper's engine), "
+            "evosoro and voxcraft.  [default: told by the tags of the file]",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
+def _keep_file_option(ctx: click.Context, parameter: click.Parameter, value: Any) -> None:
+    if value is not None:
+        ctx.meta[_FILE_OPTIONS] = attrs.evolve(file_options_of(ctx), **{str(parameter.name): value})
+
+
+def file_options_of(ctx: click.Context) -> FileOptions:
+    """Return the choices for reading files that the user made with :func:`file_options`."""
+    options: FileOptions = ctx.meta.get(_FILE_OPTIONS, FileOptions())
+    return options
+
+
+def print_notes(ctx: click.Context, path: Path, notes: Iterable[str]) -> None:
+    """Print how a file was read to standard error, unless only the requested output is printed."""
+    if not is_quiet(ctx):
+        for note in notes:
+            click.echo(f"{path}: {note}", err=True)
+
+
 def files_of(ctx: click.Context, paths: Iterable[Path]) -> Iterator[Path]:
     """Yield the files that contain the data of runs, studies and files; some need not exist."""
+    base = file_options_of(ctx).base
+    if base is not None:
+        yield base
     for path in paths:
         if not path.is_dir():
             yield path
@@ -87,10 +143,13 @@ def read_jobs(
     *,
     scored: bool = True,
 ) -> list[Job]:
-    """Read the designs of files, of runs, and of the runs of studies, as by :func:`read_job`."""
-    plugins = plugins_of(ctx)
-    found = with_runs_of_studies(ctx, paths)
-    return [read_job(path, preset, overrides, plugins, scored=scored) for path in found]
+    """Read the designs of files, of runs, and of the runs of studies, as by :func:`read_job`; print notes."""
+    plugins, options = plugins_of(ctx), file_options_of(ctx)
+    jobs = []
+    for path in with_runs_of_studies(ctx, paths):
+        jobs.append(read_job(path, preset, overrides, plugins, scored=scored, options=options))
+        print_notes(ctx, path, jobs[-1].notes)
+    return jobs
 
 
 def refuse_run_and_study(ctx: click.Context, source: str) -> None:

@@ -19,7 +19,7 @@ from evoframe.cli.context import (
     warn_overlooked,
     workers_option,
 )
-from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
+from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, read_jobs
 from evoframe.config import Layer
 from evoframe.designs import Job, keep_of_job, verdict, verify_job
 from evoframe.messages import quantity, unit_name
@@ -37,6 +37,7 @@ Examples:
 
 @click.command(epilog=_EPILOG)
 @click.argument("sources", metavar="RUN|STUDY|FILE...", nargs=-1, required=True, type=RUN_STUDY_OR_FILE)
+@file_options
 @preset_option
 @set_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON with full precision.")
@@ -76,7 +77,7 @@ def verify(
 def _document(job: Job, label: str, verification: Verification) -> dict[str, Any]:
     first, last = verification.unchanged.window or (None, None)
     measure = {"objective": job.config.objective.name, "first_time": first, "last_time": last}
-    return {"body": label, **measure, **verification.to_json()}
+    return {"body": label, "dialect": job.dialect or None, **measure, **verification.to_json()}
 
 
 def _print(job: Job, verifications: Sequence[Verification]) -> None:

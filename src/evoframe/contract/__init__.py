@@ -14,6 +14,7 @@ from evoframe.contract.config import (
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
 from evoframe.contract.optional import (
+    SupportsDialects,
     SupportsDuration,
     SupportsExemptions,
     SupportsExport,
@@ -50,6 +51,8 @@ from evoframe.contract.values import (
     BestPair,
     Design,
     Export,
+    FileContents,
+    FileOptions,
     Member,
     Outcome,
     Pair,
@@ -81,6 +84,8 @@ __all__ = [
     "Executor",
     "ExecutorRun",
     "Export",
+    "FileContents",
+    "FileOptions",
     "Geometry",
     "GeometryPart",
     "Member",
@@ -100,6 +105,7 @@ __all__ = [
     "Scores",
     "Simulator",
     "Source",
+    "SupportsDialects",
     "SupportsDuration",
     "SupportsExemptions",
     "SupportsExport",

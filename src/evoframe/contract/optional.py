@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from evoframe.contract.drawings import Geometry, NetworkGraph
 from evoframe.contract.protocols import Aggregator, Encoder, Evolver, Objective, Simulator
-from evoframe.contract.values import Design, Export, Record
+from evoframe.contract.values import Design, Export, FileContents, FileOptions, Record
 
 __all__ = [
+    "SupportsDialects",
     "SupportsDuration",
     "SupportsExemptions",
     "SupportsExport",
@@ -106,6 +107,25 @@ class SupportsDuration(Simulator, Protocol):
 
     def duration_of(self, design: Design) -> float:
         """Return the time of the last step of a design's simulation, s; 0 if it cannot start."""
+
+
+@runtime_checkable
+class SupportsDialects(SupportsReading, SupportsSettings, Protocol):
+    """A simulator whose files depend on choices of the user (``--dialect``, ``--base``, ``--set``)."""
+
+    @property
+    def dialects(self) -> tuple[str, ...]:
+        """Names of the programs whose rules for files it knows."""
+
+    def interpret(self, path: Path, options: FileOptions) -> FileContents | None:
+        """Return the contents of a file; ``None`` if it has no settings and is read by :meth:`read`.
+
+        Settings that ``options.settings`` override need not be valid, nor complete.
+
+        Raises:
+            InputError: The file cannot be read, is invalid, or requires a choice that *options* lack.
+            ConfigurationError: An option is unknown, or does not fit the file.
+        """
 
 
 @runtime_checkable

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import attrs
@@ -13,6 +14,8 @@ __all__ = [
     "BestPair",
     "Design",
     "Export",
+    "FileContents",
+    "FileOptions",
     "Member",
     "Outcome",
     "Pair",
@@ -120,6 +123,38 @@ class Export:
 
     data: bytes
     left_out: tuple[str, ...] = ()
+
+
+@attrs.frozen
+class FileOptions:
+    """Choices of the user for reading a file with designs.
+
+    Attributes:
+        dialect: Name of the program by whose rules the file is read; empty: told by the file.
+        base: File that completes one which contains only differences; ``None``: told by the file.
+        settings: Options of the simulator that the user sets; they override those of the file.
+    """
+
+    dialect: str = ""
+    base: Path | None = None
+    settings: Mapping[str, Any] = attrs.field(factory=dict)
+
+
+@attrs.frozen(eq=False)
+class FileContents:
+    """Contents of a file with designs and settings.
+
+    Attributes:
+        designs: The designs with their labels, at least one.
+        settings: Options of the simulator that the file contains, as TOML values.
+        dialect: Name of the program by whose rules it was read; empty if there is only one.
+        notes: What a user should know about the reading, such as a choice between rules; a line each.
+    """
+
+    designs: tuple[tuple[str, Design], ...]
+    settings: Mapping[str, Any]
+    dialect: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @attrs.frozen

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import attrs
 
@@ -20,8 +20,11 @@ from evoframe.config import (
 )
 from evoframe.contract import (
     Design,
+    FileContents,
+    FileOptions,
     RunConfig,
     Simulator,
+    SupportsDialects,
     SupportsObjective,
     SupportsReading,
     SupportsSettings,
@@ -54,6 +57,8 @@ class Job:
         score: Its score in the run, if the design is a champion simulated as in its run.
         unscored: Reason why the simulations lack the samples that the objective requires, so that the designs
             have no scores; empty if they have.
+        dialect: Name of the program by whose rules the file was read; empty if there is no choice.
+        notes: What a user should know about the reading of the file, a line each.
     """
 
     path: Path
@@ -63,15 +68,18 @@ class Job:
     run: Run | None = None
     score: float | None = None
     unscored: str = ""
+    dialect: str = ""
+    notes: tuple[str, ...] = ()
 
 
-def read_job(
+def read_job(  # noqa: PLR0913 - the choices of a user
     source: Path | Run,
     preset: str | None,
     overrides: Overrides,
     plugins: Plugins,
     *,
     scored: bool = True,
+    options: FileOptions | None = None,
 ) -> Job:
     """Read the designs of a source, and determine the configuration with which they are simulated.
 
@@ -91,12 +99,14 @@ def read_job(
         plugins: The available plugins.
         scored: Whether the designs must be scored. If not, simulations may lack the samples that the
             objective requires, unless *overrides* set the objective; :attr:`Job.unscored` has the reason.
+        options: Choices for reading a file; their settings are those of *overrides*.
 
     Raises:
         InputError: The file cannot be read, or has an unexpected content.
         ConfigurationError: The configuration is invalid, or does not fit the designs.
     """
-    reader = _Reader(preset, overrides, plugins, scored or "objective" in _tree(overrides))
+    scored = scored or "objective" in _tree(overrides)
+    reader = _Reader(preset, overrides, plugins, scored, options or FileOptions())
     if isinstance(source, Run):
         return reader.of_run(source)
     if is_directory(source):
@@ -123,14 +133,17 @@ class _Reader:
     overrides: Overrides
     plugins: Plugins
     scored: bool
+    options: FileOptions
 
     def of_run(self, run: Run) -> Job:
+        self._refuse_options(run.directory)
         champion, path = run.champion(), run.directory
         own = read_layers(self.preset) if self.preset else layers_in(run.config, str(path / CONFIG_FILE))
         job = self._job(path, own, CONFIG_FILE, [(str(path), champion.design)])
         return attrs.evolve(_checked(job), run=run, score=self._score(champion.score, own))
 
     def of_champion(self, path: Path) -> Job:
+        self._refuse_options(path)
         champion = read_champion(path)
         own = read_layers(self.preset or DEFAULT_PRESET)
         if self.preset is None:
@@ -140,17 +153,46 @@ class _Reader:
 
     def of_file(self, path: Path) -> Job:
         source = self.preset or DEFAULT_PRESET
-        settings = _settings_of(path, source, self.overrides, self.plugins)
+        settings, contents = self._contents(path, source)
         own = read_layers(source).under(settings)
         chosen = resolve_simulator(own.under(self.overrides), self.plugins)
         if chosen is None or not isinstance(chosen.component, SupportsReading):
             config = self._config(own, DEFAULT_PRESET)  # faults of the settings come first
             problem = f"'{config.simulator.name}' cannot read files with designs"
             raise ConfigurationError(problem, source=path, key="simulator")
-        labelled = chosen.component.read(path)
+        labelled = contents.designs if contents else chosen.component.read(path)
         if settings and self.preset is None and not _names_objective(self.overrides):
             own = own.under(_suggested(path, chosen.component, [design for _, design in labelled]))
-        return self._job(path, own, DEFAULT_PRESET, labelled)
+        job = self._job(path, own, DEFAULT_PRESET, labelled)
+        return attrs.evolve(job, dialect=contents.dialect, notes=contents.notes) if contents else job
+
+    def _contents(self, path: Path, source: str) -> tuple[list[Layer], FileContents | None]:
+        """Return the settings in a file as a layer, if it has any, and its contents, if it has dialects."""
+        simulator = named_simulator(source, self.overrides, self.plugins)
+        component = None if simulator is None else simulator.component
+        settings, contents = None, None
+        if isinstance(component, SupportsDialects):
+            options = attrs.evolve(self.options, settings=_options_of_simulator(self.overrides))
+            contents = component.interpret(path, options)
+            settings = contents.settings if contents else None
+        elif isinstance(component, SupportsSettings):
+            settings = component.settings_of(path)
+        if contents is None:
+            self._refuse_options(path)
+        if simulator is None or settings is None:
+            return [], contents
+        return [Layer(str(path), {"simulator": {"name": simulator.name, **settings}})], contents
+
+    def _refuse_options(self, path: Path) -> None:
+        """Refuse options for reading files with dialects if a source is none of them.
+
+        Raises:
+            ConfigurationError: There is such an option.
+        """
+        for given, name in ((self.options.dialect, "--dialect"), (self.options.base, "--base")):
+            if given:
+                problem = f"{path} is read in one way only; {name} is for files of other programs"
+                raise ConfigurationError(problem, source=name)
 
     def _job(self, path: Path, own: Layers, base: str, labelled: Sequence[tuple[str, Design]]) -> Job:
         config = self._config(own, base)
@@ -176,13 +218,10 @@ def _names_objective(overrides: Overrides) -> bool:
     return table is not None and not (isinstance(table, Mapping) and "name" not in table)
 
 
-def _settings_of(path: Path, source: str, overrides: Overrides, plugins: Plugins) -> list[Layer]:
-    """Return the settings in a file as a layer, if it has any."""
-    simulator = named_simulator(source, overrides, plugins)
-    if simulator is None or not isinstance(simulator.component, SupportsSettings):
-        return []
-    settings = simulator.component.settings_of(path)
-    return [] if settings is None else [Layer(str(path), {"simulator": {"name": simulator.name, **settings}})]
+def _options_of_simulator(overrides: Overrides) -> dict[str, Any]:
+    """Return the options of the simulator that *overrides* set."""
+    table = _tree(overrides).get("simulator")
+    return {key: value for key, value in table.items() if key != "name"} if isinstance(table, Mapping) else {}
 
 
 def _suggested(path: Path, simulator: Simulator, designs: Sequence[Design]) -> list[Layer]:

@@ -11,6 +11,7 @@ from evoframe.config import layers_of
 from evoframe.contract import (
     Design,
     ExecutorRun,
+    FileOptions,
     Objective,
     RunConfig,
     Score,
@@ -34,6 +35,7 @@ def verify(
     preset: str | None = None,
     workers: int | None = None,
     plugins: Plugins | None = None,
+    options: FileOptions | None = None,
     **settings: Any,
 ) -> list[Verification]:
     """Simulate designs again with one thing changed at a time, like the command ``evoframe verify``.
@@ -43,6 +45,7 @@ def verify(
         preset: The preset for settings that the file lacks; for a champion, it replaces the run's settings.
         workers: Overrides ``executor.workers``.
         plugins: The available plugins; by default all installed plugins.
+        options: Choices for reading a file, such as its dialect.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
 
     Returns:
@@ -55,7 +58,7 @@ def verify(
     """
     overrides = layers_of({**settings, "executor.workers": workers})
     named = source if isinstance(source, Run) else Path(source)
-    job = read_job(named, preset, overrides, plugins or discover())
+    job = read_job(named, preset, overrides, plugins or discover(), options=options)
     verifications = verify_job(job)
     keep_of_job(job, verifications)
     return verifications

@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 
 from evoframe.config import layers_of
-from evoframe.contract import SupportsRandomControllers, unit_of
+from evoframe.contract import FileOptions, SupportsRandomControllers, unit_of
 from evoframe.documents import as_read
 from evoframe.errors import ConfigurationError
 from evoframe.record import Run
@@ -28,6 +28,7 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
     preset: str | None = None,
     workers: int | None = None,
     plugins: Plugins | None = None,
+    options: FileOptions | None = None,
     **settings: Any,
 ) -> Robustness:
     """Simulate bodies with the same random controllers, as the command ``evoframe robustness`` does.
@@ -43,6 +44,7 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
         preset: The preset that simulates all bodies; by default, a champion is simulated as in its run.
         workers: Overrides ``executor.workers``; the result does not depend on it.
         plugins: The plugins to choose from; by default the installed ones.
+        options: Choices for reading files, such as their dialect.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
 
     Raises:
@@ -52,7 +54,9 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
     """
     paths = [source.directory if isinstance(source, Run) else Path(source) for source in sources]
     overrides = layers_of({**settings, "executor.workers": workers})
-    candidates = read_candidates(paths, preset, overrides, plugins or discover(), published=published)
+    candidates = read_candidates(
+        paths, preset, overrides, plugins or discover(), published=published, options=options
+    )
     return measure(candidates, setting_of(candidates, seed, controllers))
 
 
@@ -94,7 +98,9 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
     """
     config = candidates.config
     bodies = [
-        Body(body.label, body.group, digest_of(_simulator(candidates), body.design), body.source)
+        Body(
+            body.label, body.group, digest_of(_simulator(candidates), body.design), body.source, body.dialect
+        )
         for body in candidates.bodies
     ]
     unit = unit_of(config.objective.component)

@@ -8,7 +8,7 @@ from pathlib import Path
 import attrs
 
 from evoframe.config import Layer, load_config
-from evoframe.contract import RunConfig, SupportsPublished, SupportsRandomControllers, blaming
+from evoframe.contract import FileOptions, RunConfig, SupportsPublished, SupportsRandomControllers, blaming
 from evoframe.designs import DEFAULT_PRESET, Job, read_job
 from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
@@ -27,10 +27,12 @@ class Candidates:
     Attributes:
         config: Configuration of simulator, objective and executor.
         bodies: One or more bodies on the same canvas, with different names.
+        notes: Files, with what a user should know about their reading.
     """
 
     config: RunConfig
     bodies: tuple[Candidate, ...]
+    notes: tuple[tuple[Path, tuple[str, ...]], ...] = ()
 
 
 @attrs.frozen(eq=False)
@@ -41,20 +43,23 @@ class Part:
         named: The source as given by the user.
         config: Configuration that simulates them.
         bodies: One or more bodies.
+        notes: What a user should know about the reading of a file.
     """
 
     named: str
     config: RunConfig
     bodies: tuple[Candidate, ...]
+    notes: tuple[str, ...] = ()
 
 
-def read_candidates(
+def read_candidates(  # noqa: PLR0913 - the choices of a user
     sources: Sequence[Path],
     preset: str | None,
     overrides: Sequence[str | Layer],
     plugins: Plugins,
     *,
     published: bool = False,
+    options: FileOptions | None = None,
 ) -> Candidates:
     """Read the bodies of all sources, and check that they can be compared.
 
@@ -68,6 +73,7 @@ def read_candidates(
         plugins: The plugins to choose from.
         published: Whether to add the published bodies of the simulator. They are simulated like the first
             source or, without sources, with the preset (by default ``paper``).
+        options: Choices for reading files.
 
     Raises:
         InputError: A source cannot be read, or the bodies cannot be compared.
@@ -76,8 +82,9 @@ def read_candidates(
     studies = [path for path in sources if is_study(path)]
     alike = len({shown_name(path) for path in studies}) < len(studies)
     names = {path: _text(path) if alike else shown_name(path) for path in studies} if len(studies) > 1 else {}
-    reader = _Reader(preset, overrides, plugins, names)
+    reader = _Reader(preset, overrides, plugins, names, options or FileOptions())
     parts = [part for path in sources for part in _some(reader, path)]
+    notes = tuple((Path(part.named), part.notes) for part in parts if part.notes)
     if published:
         config = parts[0].config if parts else _config(preset, overrides, plugins)
         parts.append(_published(config))
@@ -93,7 +100,7 @@ def read_candidates(
             "requires; choose another, as in --set simulator=vox"
         )
     _refuse_other_canvases(bodies, config.simulator.component.requires)
-    return Candidates(config, bodies)
+    return Candidates(config, bodies, notes)
 
 
 def champions(directory: Path, plugins: Plugins) -> Iterator[Part]:
@@ -107,7 +114,7 @@ def champions(directory: Path, plugins: Plugins) -> Iterator[Part]:
         InputError: A run is damaged.
         ConfigurationError: A champion cannot be simulated with these plugins.
     """
-    return _Reader(None, (), plugins, {}).parts(directory)
+    return _Reader(None, (), plugins, {}, FileOptions()).parts(directory)
 
 
 @attrs.frozen
@@ -118,6 +125,7 @@ class _Reader:
     overrides: Sequence[str | Layer]
     plugins: Plugins
     studies: Mapping[Path, str]
+    options: FileOptions
 
     def parts(self, path: Path) -> Iterator[Part]:
         if is_study(path):
@@ -126,7 +134,7 @@ class _Reader:
             yield _of_job(self._job(path))
 
     def _job(self, path: Path, own: Sequence[Layer] = ()) -> Job:
-        return read_job(path, self.preset, [*own, *self.overrides], self.plugins)
+        return read_job(path, self.preset, [*own, *self.overrides], self.plugins, options=self.options)
 
     def _of_study(self, path: Path) -> Iterator[Part]:
         study = read_study(path / STUDY_FILE, (), self.plugins)
@@ -164,9 +172,10 @@ def _of_job(job: Job) -> Part:
     named = _text(job.path)
     labels = [named if label in (job.path.name, str(job.path)) else label for label in job.labels]
     bodies = [
-        Candidate(label, label, design, named) for label, design in zip(labels, job.designs, strict=True)
+        Candidate(label, label, design, named, job.dialect)
+        for label, design in zip(labels, job.designs, strict=True)
     ]
-    return Part(named, job.config, tuple(bodies))
+    return Part(named, job.config, tuple(bodies), job.notes)
 
 
 def _text(path: Path) -> str:

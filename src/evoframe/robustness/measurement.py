@@ -44,12 +44,14 @@ class Candidate:
         group: Name of its group; its own label if it is alone.
         design: The body; its controller is ignored.
         source: File or directory of the body.
+        dialect: Name of the program by whose rules the file was read; empty if there is no choice.
     """
 
     label: str
     group: str
     design: Design
     source: str
+    dialect: str = ""
 
 
 @attrs.frozen
@@ -61,12 +63,14 @@ class Body:
         group: Name of its group; its own label if it is alone.
         digest: Digest of all roles that a random controller does not replace; equal for equal bodies.
         source: File or directory of the body.
+        dialect: Name of the program by whose rules the file was read; empty if there is no choice.
     """
 
     label: str
     group: str
     digest: str
     source: str = attrs.field(eq=False)  # copies of a body are equal
+    dialect: str = attrs.field(default="", eq=False)  # its effect is in the simulation
 
 
 @attrs.frozen

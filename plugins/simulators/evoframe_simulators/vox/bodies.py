@@ -1,7 +1,8 @@
-"""Validation of bodies as arrays, and reading of bodies from ``.npz`` files."""
+"""Validation of bodies as arrays, and bodies in ``.npz`` files."""
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,7 +17,7 @@ from evoframe_simulators.npz import PackedArray, open_npz
 from evoframe_simulators.vox.limits import MOST_CELLS, MOST_CYCLES
 from evoframe_simulators.vox.materials import PaletteMaterial, describe_codes
 
-__all__ = ["check_codes", "check_cycles", "check_design", "read_bodies"]
+__all__ = ["check_codes", "check_cycles", "check_design", "read_bodies", "write_body"]
 
 
 def check_design(design: Design) -> None:
@@ -64,7 +65,7 @@ def check_cycles(cycles: NDArray[np.float64], name: str) -> None:
 def read_bodies(
     path: Path, materials: Mapping[int, PaletteMaterial]
 ) -> list[tuple[str, NDArray[np.uint8], NDArray[np.float64]]]:
-    """Return label, material and phase offsets (in cycles) of each body of a file.
+    """Return label, material and phase offsets (in cycles) of each body of a file; some may have no voxels.
 
     Args:
         path: An ``.npz`` file.
@@ -77,9 +78,6 @@ def read_bodies(
         _check_headers(material, phase)
         codes = material.unpack()
         check_codes(codes, materials)
-        without = np.flatnonzero(~codes.any(axis=(-3, -2, -1)))
-        if without.size:
-            raise InputError(f"body {without[0]} has no voxels", key="material")
         codes = codes.astype(np.uint8)
         with np.errstate(all="ignore"):  # values beyond double precision become infinite
             cycles: NDArray[np.float64] = phase.unpack().astype(np.float64)
@@ -87,6 +85,27 @@ def read_bodies(
     if codes.ndim == 3:
         return [(path.name, codes, cycles)]
     return [(f"{path.name}[{n}]", *body) for n, body in enumerate(zip(codes, cycles, strict=True))]
+
+
+def write_body(
+    material: NDArray[np.uint8], phase_cycles: NDArray[np.float64], acting: NDArray[np.bool_]
+) -> bytes:
+    """Return a body as an ``.npz`` file, as :func:`read_bodies` reads it; the same bytes for the same body.
+
+    Args:
+        material: Codes, ``uint8[X, Y, Z]``.
+        phase_cycles: Offsets, ``float64[X, Y, Z]``, cycles.
+        acting: Mask of the cells whose offset has an effect, ``bool[X, Y, Z]``; 0 replaces invalid others.
+
+    Raises:
+        InputError: An offset with an effect is out of range.
+    """
+    valid = np.abs(phase_cycles) <= MOST_CYCLES
+    offsets = np.where(valid | acting, phase_cycles, 0.0)
+    check_cycles(offsets, CONTROLLER)
+    file = io.BytesIO()
+    np.savez_compressed(file, material=material, phase_cycles=offsets)
+    return file.getvalue()
 
 
 def _check_headers(material: PackedArray, phase: PackedArray) -> None:

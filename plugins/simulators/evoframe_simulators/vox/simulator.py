@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 import evoframe_libvox as libvox
 from evoframe import (
@@ -19,6 +20,8 @@ from evoframe import (
     ConfigurationError,
     Design,
     Export,
+    FileContents,
+    FileOptions,
     Geometry,
     InputError,
     Outcome,
@@ -26,8 +29,9 @@ from evoframe import (
     Variant,
 )
 from evoframe_simulators.files import naming_source
-from evoframe_simulators.vox.bodies import check_codes, check_design, read_bodies
+from evoframe_simulators.vox.bodies import check_codes, check_design, read_bodies, write_body
 from evoframe_simulators.vox.geometry import geometry_of
+from evoframe_simulators.vox.materials import PaletteMaterial
 from evoframe_simulators.vox.models import (
     acting_codes,
     clock_of,
@@ -42,7 +46,7 @@ from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cy
 from evoframe_simulators.vox.simulation import simulate
 from evoframe_simulators.vox.tracks import POINTS, check_tracks
 from evoframe_simulators.vox.verification import MEANINGS, changes
-from evoframe_simulators.vox.vxa import left_out, read_vxa, write_vxa
+from evoframe_simulators.vox.vxa import DIALECTS, SUFFIXES, left_out, read_vxa, write_vxa
 
 __all__ = ["Vox"]
 
@@ -59,7 +63,8 @@ class Vox(VoxSettings):
 
     requires: ClassVar[tuple[str, ...]] = (MORPHOLOGY, CONTROLLER)
     tracks: ClassVar[tuple[libvox.Track, ...]] = POINTS
-    formats: ClassVar[tuple[str, ...]] = ("vxa",)
+    formats: ClassVar[tuple[str, ...]] = ("vxa", "npz")
+    dialects: ClassVar[tuple[str, ...]] = DIALECTS
 
     def __attrs_post_init__(self) -> None:
         possible_clocks(self)  # raises if the solver rejects the combination
@@ -165,23 +170,25 @@ class Vox(VoxSettings):
         ]
 
     def read(self, path: Path) -> list[tuple[str, Design]]:
-        """Return the labels and bodies of an ``.npz`` or ``.vxa`` file.
+        """Return the labels and bodies of an ``.npz`` file, or of a ``.vxa``, ``.vxc`` or ``.vxd`` file.
 
         An ``.npz`` file contains ``material`` (``[X, Y, Z]`` or ``[N, X, Y, Z]``, codes of the palette) and
-        ``phase_cycles`` of the same shape. The offsets of a ``.vxa`` file are not converted; ``phase_unit``
+        ``phase_cycles`` of the same shape. The offsets of other files are not converted; ``phase_unit``
         determines their unit.
 
         Raises:
             InputError: The file cannot be read, or is of another kind.
         """
         materials = materials_of(self)
-        if path.suffix.lower() == ".vxa":
-            file = read_vxa(path)
-            with naming_source(path):
-                check_codes(file.material, materials)
-            return [(path.name, Design({MORPHOLOGY: file.material, CONTROLLER: file.phase}))]
+        if path.suffix.lower() in SUFFIXES:
+            palette = [attrs.asdict(material) for material in materials.values()]
+            contents = self.interpret(
+                path, FileOptions(settings={"palette": palette, "duration": self.duration})
+            )
+            return list(contents.designs) if contents else []
         if path.suffix.lower() != ".npz":
-            raise InputError("expected a file named *.npz or *.vxa", source=path)
+            expected = ", ".join(f"*{suffix}" for suffix in SUFFIXES)
+            raise InputError(f"expected a file named *.npz, {expected}", source=path)
         unit = 1.0 if self.phase_unit == "cycles" else math.tau
         return [
             (label, Design({MORPHOLOGY: material, CONTROLLER: phase_cycles * unit}))
@@ -190,23 +197,34 @@ class Vox(VoxSettings):
 
     @staticmethod
     def settings_of(path: Path) -> Mapping[str, Any] | None:
-        """Return all options of a ``.vxa`` file as TOML values; ``None`` for other files.
+        """Return all options of a ``.vxa``, ``.vxc`` or ``.vxd`` file as TOML values; ``None`` for others.
 
         Raises:
-            InputError: The file cannot be read, is not a VXA file, or uses features that vox lacks.
+            InputError: The file cannot be read, is of another kind, or uses features that vox lacks.
         """
-        if path.suffix.lower() != ".vxa":
+        contents = Vox.interpret(path, FileOptions())
+        return contents.settings if contents else None
+
+    @staticmethod
+    def interpret(path: Path, options: FileOptions) -> FileContents | None:
+        """Return body and options of a ``.vxa``, ``.vxc`` or ``.vxd`` file; ``None`` for other files.
+
+        Raises:
+            InputError: The file cannot be read, is of another kind, uses features that vox lacks, does not
+                say when its simulation ends, or means different things in different dialects.
+            ConfigurationError: There is no such dialect, or the file has no base.
+        """
+        if path.suffix.lower() not in SUFFIXES:
             return None
-        file = read_vxa(path)
+        file = read_vxa(path, options.dialect, options.base, options.settings)
         with naming_source(path):
-            settings = file.settings()
-        # TOML has lists instead of tuples.
-        return attrs.asdict(
-            settings, value_serializer=lambda _, __, value: list(value) if isinstance(value, tuple) else value
-        )
+            settings = file.toml(options.settings)
+            _check_palette(file.material, settings["palette"])
+        design = Design({MORPHOLOGY: file.material, CONTROLLER: file.phase})
+        return FileContents(((path.name, design),), settings, file.rules.dialect, file.notes)
 
     def export(self, design: Design, format: str) -> Export:  # noqa: A002 - the protocol's word
-        """Return a design with these settings as a file in the format ``vxa``.
+        """Return a design as a file in the format ``vxa``, with these settings, or ``npz``, without them.
 
         Raises:
             ConfigurationError: The format is unknown.
@@ -216,13 +234,30 @@ class Vox(VoxSettings):
             raise ConfigurationError(f"unknown format '{format}'; formats of vox: {', '.join(self.formats)}")
         check_design(design)
         material, phase = design.roles[MORPHOLOGY], phase_cycles(self, design)
-        acting = acting_codes(self)[material]
         check_codes(material, materials_of(self))
+        acting = acting_codes(self)[material]
+        if format == "npz":
+            return Export(
+                write_body(material, phase, acting), ("the settings (set them by --preset or --set)",)
+            )
         return Export(write_vxa(self, material, phase, acting), left_out(self))
 
     def provenance(self) -> dict[str, str]:
         """Return the solver's kernel and the compiler that built it."""
         return {"libvox kernel": model_of(self, (1, 1, 1)).kernel, "libvox compiler": libvox.COMPILER}
+
+
+def _check_palette(material: NDArray[np.uint8], tables: Sequence[Mapping[str, Any]]) -> None:
+    """Reject a body with materials that are not in a palette, given as TOML values.
+
+    Raises:
+        InputError: A cell has an unknown code; names the code and the known ones.
+    """
+    try:
+        palette = tuple(PaletteMaterial(**table) for table in tables)
+    except (TypeError, ValueError):
+        return  # an invalid override, which the core reports
+    check_codes(material, materials_of(VoxSettings(palette=palette)))
 
 
 @functools.lru_cache(maxsize=16)

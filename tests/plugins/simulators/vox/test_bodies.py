@@ -66,13 +66,6 @@ MATERIALS = materials_of(Vox())
         pytest.param(
             bodies(material=SOLID + np.uint16(256)), "material", "code 257", id="a code beyond uint8"
         ),
-        pytest.param(bodies(material=SOLID * 0), "material", "body 0", id="no voxel"),
-        pytest.param(
-            bodies(material=np.stack([SOLID, SOLID * 0]), phase_cycles=np.stack([ZERO, ZERO])),
-            "material",
-            "body 1",
-            id="no voxel in the second",
-        ),
         pytest.param(
             bodies(phase_cycles=ZERO[1:]),
             "phase_cycles",

@@ -1,8 +1,8 @@
 """Files of VoxCAD and the programs around the old Voxelyze engine: VXA, VXC and VXD.
 
-Programs read the same tags by different rules (:mod:`.dialects`). Exported files have the rules of the paper's
-engine, the fork ``reconfigurable_organisms``; evosoro's engine ``_voxcad`` limits the size of a voxel to the
-nominal one, so that exported bodies expand only in the fork and in evosoro's ``_voxcad_land_water``.
+Programs read the same tags by different rules (:mod:`.dialects`). Exported files have the rules of the
+paper's engine, the fork ``reconfigurable_organisms``; evosoro's engine ``_voxcad`` limits the size of a voxel
+to the nominal one, so that exported bodies expand only in the fork and in evosoro's ``_voxcad_land_water``.
 """
 
 from evoframe_simulators.vox.vxa.assembling import SUFFIXES

@@ -46,8 +46,8 @@ def read_document(path: Path, base: Path | None = None) -> Document:
 
     Args:
         path: A VXA, VXC or VXD file.
-        base: VXA file that completes a VXC or VXD file. Without it, a VXD file is completed by ``base.vxa`` in
-            its directory, or by the only VXA file there.
+        base: VXA file that completes a VXC or VXD file. Without it, a VXD file is completed by ``base.vxa``
+            in its directory, or by the only VXA file there.
 
     Raises:
         InputError: A file cannot be read or is of another kind, or a VXD file has no base.
@@ -58,8 +58,8 @@ def read_document(path: Path, base: Path | None = None) -> Document:
         tag = str(element.tag)
         if tag not in ("VXA", "VXC", "VXD"):
             raise InputError(
-                f"is not a VXA file: found root tag {shorten(tag)}, expected VXA, VXC (a body alone) or VXD (a "
-                "body that completes a base)"
+                f"is not a VXA file: found root tag {shorten(tag)}, expected VXA, VXC (a body alone) or VXD "
+                "(sections that replace those of a base)"
             )
     if tag == "VXA":
         if base is not None:
@@ -125,7 +125,8 @@ def _replace(whole: etree._Element, path: list[str], part: etree._Element) -> No
         inner = parent.find(tag)
         parent = etree.SubElement(parent, tag) if inner is None else inner
     part.tag = path[-1]
-    part.attrib.pop("replace", None)
+    if "replace" in part.attrib:
+        del part.attrib["replace"]
     old = parent.find(path[-1])
     if old is None:
         parent.append(part)

@@ -3,15 +3,14 @@
 Facts about the programs, from their sources:
 
 - ``fork``: the paper's engine, ``reconfigurable_organisms``. Under water (``FluidEnvironment`` 1) it keeps
-  gravity and floor. A voxel that would grow beyond three times its edge, or shrink below ``MinTempFact``, keeps
-  its last size.
+  gravity and floor. A voxel that would grow beyond three times its edge, or shrink below ``MinTempFact``,
+  keeps its last size.
 - ``evosoro`` has two engines, and ignores ``FloorSlope`` in both. ``_voxcad_land_water`` disables gravity and
-  floor under water, and limits sizes only from below, at 0.1 of the edge; it is meant by files with
-  ``FluidEnvironment``. ``_voxcad`` has no water, and limits sizes to 1 + ``GrowthAmplitude``, in the manner of
-  the fork.
+  floor under water, and limits sizes only from below, at 0.1 of the edge; files with ``FluidEnvironment`` are
+  for it. ``_voxcad`` has no water, and limits sizes to 1 + ``GrowthAmplitude``, in the manner of the fork.
 - ``voxcraft``: ``voxcraft-sim`` stops by a formula, starts the actuation at time 0, and without
-  ``EnableExpansion`` only lowers the temperature. It ignores water, the slope of the floor and ``MinTempFact``,
-  and its laws of contacts and of friction are others than those of vox.
+  ``EnableExpansion`` only lowers the temperature. It ignores water, the slope of the floor and
+  ``MinTempFact``, and its laws of contacts and of friction are others than those of vox.
 """
 
 from __future__ import annotations
@@ -43,7 +42,10 @@ _MARKS: Final[dict[Dialect, tuple[str, ...]]] = {
     "fork": (
         f"{_STOP}/ActuationStartTime",
         f"{_ENVIRONMENT}/Gravity/AlterGravityHalfway",
-        *(f"{_ENVIRONMENT}/{tag}" for tag in ("RegenerationModel", "ForwardModel", "Controller", "Signaling")),
+        *(
+            f"{_ENVIRONMENT}/{tag}"
+            for tag in ("RegenerationModel", "ForwardModel", "Controller", "Signaling")
+        ),
         *(f"{_ENVIRONMENT}/{tag}" for tag in ("LightSource", "GrowthSpeedLimit", "GreedyGrowth")),
         *(f"{_ENVIRONMENT}/{tag}" for tag in ("GreedyThreshold", "SavePassiveData", "BlockPushing")),
         *(f"{_ENVIRONMENT}/{tag}" for tag in ("BlockMaterial", "ContractOnly", "ExpandOnly")),
@@ -56,8 +58,8 @@ _MARKS: Final[dict[Dialect, tuple[str, ...]]] = {
         *(f"{_ENVIRONMENT}/{tag}" for tag in ("NeedleInHaystack", "OnsetRelative", "FloorRadius")),
     ),
 }
-"""Tags that only one program writes. Files exported by evoframe have tags of ``fork`` and ``evosoro``, and mean
-``fork``, hence the order."""
+"""Tags that only one program writes. Files exported by evoframe have tags of ``fork`` and ``evosoro``, and
+mean ``fork``, hence the order."""
 
 
 class Engine(enum.Enum):

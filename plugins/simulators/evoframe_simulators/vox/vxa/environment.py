@@ -19,7 +19,9 @@ def is_under_water(environment: Section) -> bool:
 def read_surroundings(environment: Section, engine: Engine) -> dict[str, Any]:
     """Return gravity, floor and fluid; without the section of gravity the engine has both."""
     section, given = environment.get("Gravity"), environment.find("Gravity") is not None
-    weight, floor = (bool(section.whole(tag, 0 if given else 1, most=1)) for tag in ("GravEnabled", "FloorEnabled"))
+    weight, floor = (
+        bool(section.whole(tag, 0 if given else 1, most=1)) for tag in ("GravEnabled", "FloorEnabled")
+    )
     if engine is Engine.VOXCRAFT:
         floor = bool(section.whole("FloorEnabled", 1, most=1))
     water = is_under_water(environment) and engine is not Engine.VOXCRAFT

@@ -61,6 +61,7 @@ _TAGS: Final[Mapping[str, str]] = {
 }
 """Option of a material -> its tag."""
 
+_FORK: Final = Reading("fork", Engine.FORK)
 _NOTHING: Final[Mapping[str, Any]] = MappingProxyType({})
 _OPTION = re.compile(r"\b(" + "|".join(_PLACES) + r")\b")
 
@@ -86,7 +87,7 @@ class VxaFile:
     phase: NDArray[np.float64]
     steps: int | None = None
     complete: bool = True
-    rules: Reading = Reading("fork", Engine.FORK)
+    rules: Reading = _FORK
     notes: tuple[str, ...] = ()
 
     @property
@@ -105,16 +106,19 @@ class VxaFile:
                 checked. They are in the result, unless they are invalid.
 
         Raises:
-            InputError: A value is out of range, a tag is missing, or the solver rejects the combination; in the
-                words of the file.
+            InputError: A value is out of range, a tag is missing, or the solver rejects the combination; in
+                the words of the file.
         """
         self._check_values(given)
         if not self.complete:
-            return {"voxel_size": self.options["voxel_size"], "palette": [dict(each) for each in self.materials]}
+            return {
+                "voxel_size": self.options["voxel_size"],
+                "palette": [dict(each) for each in self.materials],
+            }
         try:
             settings = VoxSettings(**self._merged(given))
-        except (TypeError, ValueError):  # the core reports invalid overrides
-            return {**self.options, "fixed": [], "palette": []}
+        except (AttributeError, TypeError, ValueError):  # the core reports invalid overrides
+            return {**dict(given), "palette": [dict(each) for each in self.materials]}
         return attrs.asdict(self._checked(settings, given), value_serializer=_as_toml)
 
     def settings(self) -> VoxSettings:
@@ -136,7 +140,8 @@ class VxaFile:
         merged = {"palette": self.materials, **self.options, **given}
         if "fixed" in given:
             merged["fixed"] = tuple(
-                FixedRegion(**{name: tuple(value) for name, value in region.items()}) for region in given["fixed"]
+                FixedRegion(**{name: tuple(value) for name, value in region.items()})
+                for region in given["fixed"]
             )
         return {**merged, "palette": tuple(PaletteMaterial(**each) for each in merged["palette"])}
 
@@ -149,7 +154,9 @@ class VxaFile:
         if "palette" not in given:
             for material in self.materials:
                 for field in attrs.fields(PaletteMaterial):
-                    place = f"VXC/Palette/Material {material['code']}/Mechanical/{_TAGS.get(field.name, 'Name')}"
+                    place = (
+                        f"VXC/Palette/Material {material['code']}/Mechanical/{_TAGS.get(field.name, 'Name')}"
+                    )
                     _check(field, material[field.name], place, faults)
         if self.complete and self.steps is None and "duration" not in {*self.options, *given}:
             faults.missing(
@@ -171,13 +178,13 @@ class VxaFile:
 
 
 def _check(field: attrs.Attribute[Any], value: Any, place: str, faults: Faults) -> None:
-    """Add a fault if the validator of an option rejects a value; it has the name of the tag."""
+    """Add a fault if the validator of an option rejects a value."""
     if field.validator is None:
         return
     try:
-        field.validator(None, field.evolve(name=place.rpartition("/")[2]), value)
+        field.validator(None, field, value)
     except ValueError as error:
-        faults.out_of_range(place, str(error))
+        faults.out_of_range(place, str(error).removeprefix(f"'{field.name}' "))
 
 
 def _named(option: str, given: Mapping[str, Any]) -> str:

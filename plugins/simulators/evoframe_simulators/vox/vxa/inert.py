@@ -67,14 +67,7 @@ GROWTH: Values = {
     "GreedyThreshold": 0,
 }
 
-TASKS: Values = {
-    "StickyFloor": 0,
-    "BlockPushing": 0,
-    "BlockMaterial": 0,
-    "ContractOnly": 0,
-    "ExpandOnly": 0,
-    "FallingProhibited": 0,
-}
+TASKS: Values = {"StickyFloor": 0, "BlockPushing": 0, "BlockMaterial": 0}
 
 UNUSED = PaletteMaterial(
     code=1,

@@ -31,9 +31,7 @@ __all__ = ["read_vxa"]
 _VERSIONS = ("", "0.93", "0.94")  # of the section VXC; other versions encode the structure differently
 
 
-def read_vxa(
-    path: Path, dialect: str = "", base: Path | None = None, given: Collection[str] = ()
-) -> VxaFile:
+def read_vxa(path: Path, dialect: str = "", base: Path | None = None, given: Collection[str] = ()) -> VxaFile:
     """Read a VXA, VXC or VXD file (docs/physics.md, sections 1, 4, 8, 9 and 12).
 
     Missing tags and sections have the defaults of the engine (see :mod:`.vxa.dialects`). One error reports
@@ -69,7 +67,7 @@ class _Reader:
         vxc = root.need("VXC")
         structure, palette = vxc.need("Structure"), vxc.need("Palette")
         compression = self._compression(vxc, structure)
-        lattice = Lattice(read_canvas(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001))
+        lattice = Lattice(read_canvas(structure), vxc.need("Lattice").number("Lattice_Dim", 0.001, above=0.0))
         count = palette.count("Material")
         material = read_material(structure, lattice.canvas, count, compression)
         used = np.unique(material[material > 0]).tolist()
@@ -87,7 +85,9 @@ class _Reader:
             strains = [each["expansion_coefficient"] * swing for each in materials]
             reach = max(map(abs, strains))
             options.update(
-                read_sizes(root.get("Simulator"), root.get("Environment"), strains, self.rules.engine, self.faults)
+                read_sizes(
+                    root.get("Simulator"), root.get("Environment"), strains, self.rules.engine, self.faults
+                )
             )
         self.faults.check()
         return VxaFile(

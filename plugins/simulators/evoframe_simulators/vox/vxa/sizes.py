@@ -9,9 +9,14 @@ from evoframe_simulators.vox.vxa.dialects import Engine
 from evoframe_simulators.vox.vxa.faults import Faults
 from evoframe_simulators.vox.vxa.sections import Section
 
-__all__ = ["read_sizes"]
+__all__ = ["LARGEST", "SMALLEST", "read_sizes"]
 
-_SMALLEST, _LARGEST = 0.1, 3.0  # in the fork, as multiples of the edge
+SMALLEST = 0.1
+"""Smallest size of a voxel in the fork, as a multiple of its edge, unless the file sets it."""
+
+LARGEST = 3.0
+"""Largest size of a voxel in the fork, as a multiple of its edge."""
+
 _UNLIMITED = 10.0  # the largest limit that the solver accepts
 
 
@@ -28,12 +33,12 @@ def read_sizes(
         faults: Collects what vox cannot limit in the same way.
     """
     reach = max(map(abs, strains))
-    smallest, largest, rule = _SMALLEST, _LARGEST, "hold"
+    smallest, largest, rule = SMALLEST, LARGEST, "hold"
     if engine is Engine.FORK:
-        smallest = 1.0 if environment.flag("ExpandOnly") else simulator.number("MinTempFact", _SMALLEST)
-        largest = 1.0 if environment.flag("ContractOnly") else _LARGEST
+        smallest = 1.0 if environment.flag("ExpandOnly") else simulator.number("MinTempFact", SMALLEST)
+        largest = 1.0 if environment.flag("ContractOnly") else LARGEST
     elif engine is Engine.EVOSORO_LAND:
-        smallest = simulator.number("MinTempFact", _SMALLEST)
+        smallest = simulator.number("MinTempFact", SMALLEST)
         largest = min(1.0 + environment.number("GrowthAmplitude", 0.0, least=0.0), _UNLIMITED)
         if environment.flag("StickyFloor"):
             faults.unsupported(environment.at("StickyFloor"), "'1'")
@@ -42,7 +47,9 @@ def read_sizes(
     else:
         largest, rule = _UNLIMITED, "clamp"
         if 1.0 + reach > _UNLIMITED:
-            faults.unsupported(environment.at("Thermal"), f"a strain of {reach:g}", "without a limit of sizes")
+            faults.unsupported(
+                environment.at("Thermal"), f"a strain of {reach:g}", "without a limit of sizes"
+            )
         if engine is Engine.VOXCRAFT and not simulator.flag("EnableExpansion"):
             smallest, largest = _only_lowered(simulator, strains, faults)
     return {"smallest_size": smallest, "largest_size": largest, "size_rule": rule}
@@ -54,4 +61,4 @@ def _only_lowered(simulator: Section, strains: Sequence[float], faults: Faults) 
         faults.unsupported(
             simulator.at("EnableExpansion"), "'0'", "a temperature that only falls, with CTE of both signs"
         )
-    return (_SMALLEST, 1.0) if max(strains) > 0.0 else (1.0, _UNLIMITED)
+    return (SMALLEST, 1.0) if max(strains) > 0.0 else (1.0, _UNLIMITED)

@@ -19,17 +19,20 @@ from evoframe import CONTROLLER, MORPHOLOGY, InputError
 from evoframe_simulators.vox.bodies import check_cycles
 from evoframe_simulators.vox.materials import PaletteMaterial
 from evoframe_simulators.vox.regions import FixedRegion
-from evoframe_simulators.vox.settings import VoxSettings, materials_of, period_of
+from evoframe_simulators.vox.settings import VoxSettings, amplitude_of, materials_of, period_of
 from evoframe_simulators.vox.vxa.cells import as_vox_holds
 from evoframe_simulators.vox.vxa.file import FIRST_CHARACTER
 from evoframe_simulators.vox.vxa.inert import CHANGES, CONTROLLERS, FEATURES, GROWTH, TASKS, UNUSED
+from evoframe_simulators.vox.vxa.simulator import FALLING_CODE
+from evoframe_simulators.vox.vxa.sizes import LARGEST, SMALLEST
 
 __all__ = ["left_out", "write_vxa"]
 
 _LARGEST_CODE = ord("~") - FIRST_CHARACTER
 _PASSIVE, _EXPANDING, _CONTRACTING = (0.0, 0.6, 0.8), (0.8, 0.2, 0.0), (0.0, 0.6, 0.2)
 
-# Options without a tag in the format: name, description, and whether the option affects only contacts.
+# Options without a tag in the format: name, description, and whether the option affects only contacts; sizes,
+# falling and fluid are below.
 _WITHOUT_TAG = (
     ("ramp", "the ramp at the start of the contraction", False),
     ("substeps", "the substeps of time steps", False),
@@ -48,12 +51,29 @@ _Node = str | Iterable[str]
 def left_out(settings: VoxSettings) -> tuple[str, ...]:
     """Return the settings that a VXA file cannot express, unless they equal the engine's behavior."""
     defaults = attrs.fields_dict(VoxSettings)
-    return tuple(
-        f"{words} ({option} = {getattr(settings, option)})"
+    found = [
+        (option, words)
         for option, words, in_contacts in _WITHOUT_TAG
         if getattr(settings, option) != defaults[option].default
         and (settings.self_collision or not in_contacts)
-    )
+    ]
+    reach = _reach(settings)
+    passed = 1.0 - reach < settings.smallest_size or 1.0 + reach > settings.largest_size
+    if settings.largest_size not in (1.0, LARGEST) and 1.0 + reach > min(settings.largest_size, LARGEST):
+        found.append(("largest_size", "the limit of large sizes"))
+    if settings.size_rule != "hold" and passed:
+        found.append(("size_rule", "the rule at the limits of sizes"))
+    if settings.falling_code not in (0, FALLING_CODE):
+        found.append(("falling_code", "the material that must not touch the floor"))
+    if settings.fluid_drag and settings.fluid_surface != "bond-strain":
+        found.append(("fluid_surface", "the surface on which the fluid acts"))
+    return tuple(f"{words} ({option} = {getattr(settings, option)})" for option, words in found)
+
+
+def _reach(settings: VoxSettings) -> float:
+    """Return the largest thermal strain of a voxel."""
+    expansions = (abs(material.expansion_coefficient) for material in materials_of(settings).values())
+    return abs(amplitude_of(settings)) * max(expansions)
 
 
 def write_vxa(
@@ -137,7 +157,8 @@ def _simulator(settings: VoxSettings) -> Iterator[str]:
     yield from _section("EquilibriumMode", {"EquilibriumModeEnabled": 0})
     result = ["<WriteFitnessFile>1</WriteFitnessFile>", "<FitnessFileName>fitness.xml</FitnessFileName>"]
     yield from _node("GA", [*result, *_values({"Fitness": 0, "FitnessType": 0, "TrackVoxel": 0})])
-    yield from _values({"MinTempFact": 0.1, **CHANGES})
+    expanding = settings.smallest_size == 1.0  # has a tag of its own
+    yield from _values({"MinTempFact": SMALLEST if expanding else settings.smallest_size, **CHANGES})
 
 
 def _environment(settings: VoxSettings, canvas: tuple[int, ...]) -> Iterator[str]:
@@ -166,6 +187,12 @@ def _environment(settings: VoxSettings, canvas: tuple[int, ...]) -> Iterator[str
         yield from _section(tag, values)
     traces = max(0.01, settings.duration / 100)  # keeps the engine's traces of long simulations small
     yield from _values({**GROWTH, "TimeBetweenTraces": traces, "SavePassiveData": 0, **TASKS})
+    limits = {
+        "ContractOnly": settings.largest_size == 1.0,
+        "ExpandOnly": settings.smallest_size == 1.0,
+        "FallingProhibited": settings.falling_code == FALLING_CODE,
+    }
+    yield from _values(limits)
     yield from _values(
         {"FluidEnvironment": settings.fluid_drag > 0.0, "AggregateDragCoefficient": settings.fluid_drag}
     )

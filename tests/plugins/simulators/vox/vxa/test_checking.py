@@ -13,8 +13,9 @@ from evoframe import InputError
 from evoframe_simulators import Vox
 from evoframe_simulators.vox.vxa import read_vxa
 from evoframe_simulators.vox.vxa.checking import collect_unsupported
+from evoframe_simulators.vox.vxa.faults import Faults
 from evoframe_simulators.vox.vxa.schema import Role, Schema
-from evoframe_simulators.vox.vxa.sections import Section, Unsupported
+from evoframe_simulators.vox.vxa.sections import Section
 
 Write = Callable[..., Path]
 
@@ -22,22 +23,23 @@ SCHEMA: Schema = {"Read": Role.READ, "Idle": Role.IDLE, "Refused": Role.UNSUPPOR
 ON = {"Refused", "Off", "One", "Unknown"}
 
 
-def rejected(text: str, schema: Schema = SCHEMA) -> str:
-    """Return the rejected tags of a section as text, empty if all are accepted."""
-    unsupported = Unsupported()
-    collect_unsupported(Section(etree.fromstring(f"<S>{text}</S>"), "S"), (), unsupported, schema)
+def rejected(text: str, schema: Schema = SCHEMA) -> list[str]:
+    """Return the rejected tags of a section with their values, none if all are accepted."""
+    faults = Faults()
+    collect_unsupported(Section(etree.fromstring(f"<S>{text}</S>"), "S"), (), faults, schema)
     try:
-        unsupported.check()
+        faults.check()
     except InputError as error:
-        return error.problem.partition("): ")[2]
-    return ""
+        if error.key:
+            return [f"{error.key} = {error.problem.partition(': ')[2]}"]
+        return [line.strip() for line in error.problem.splitlines() if line.startswith("    ")]
+    return []
 
 
 @given(tags=st.lists(st.sampled_from(sorted({*SCHEMA, "Unknown"})), max_size=6))
 def test_rejected_tags_are_named_in_the_order_of_the_file(tags: list[str]) -> None:
     found = rejected("".join(f"<{tag}>7</{tag}>" for tag in tags))
-    named = [part.split(" = ")[0].removeprefix("S/") for part in found.split("; ") if part]
-    assert named == [tag for tag in tags if tag in ON]
+    assert [part.split(" = ")[0].removeprefix("S/") for part in found] == [tag for tag in tags if tag in ON]
 
 
 @pytest.mark.parametrize(
@@ -52,7 +54,7 @@ def test_rejected_tags_are_named_in_the_order_of_the_file(tags: list[str]) -> No
     ],
 )
 def test_a_tag_is_accepted_only_with_the_value_for_off(text: str, expected: str) -> None:
-    assert rejected(text) == expected
+    assert rejected(text) == ([expected] if expected else [])
 
 
 @given(depth=st.integers(1, 5))
@@ -61,7 +63,7 @@ def test_a_nested_section_is_named_with_its_path(depth: int) -> None:
     for _ in range(depth):
         text, schema = f"<FRegion>{text}</FRegion>", {"FRegion": schema}
     assert isinstance(schema, Mapping)
-    assert rejected(text, schema) == f"S{'/FRegion 1' * depth}/Off = '3'"
+    assert rejected(text, schema) == [f"S{'/FRegion 1' * depth}/Off = '3'"]
 
 
 @pytest.mark.parametrize(
@@ -115,4 +117,4 @@ def test_unused_materials_are_not_checked(vxa: Write) -> None:
     start = text.index('<Material ID="4">')
     head, tail = text[:start], text[start:]
     path.write_text(head + tail.replace("<MatModel>0<", "<MatModel>2<").replace("-0.01", "much"))
-    assert [material.code for material in read_vxa(path).options["palette"]] == [1, 3]
+    assert [material["code"] for material in read_vxa(path).materials] == [1, 3]

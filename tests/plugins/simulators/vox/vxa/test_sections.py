@@ -11,7 +11,7 @@ from hypothesis import given, strategies as st
 from lxml import etree
 
 from evoframe import InputError
-from evoframe_simulators.vox.vxa.sections import Section, Unsupported, parse_number
+from evoframe_simulators.vox.vxa.sections import Section, parse_number
 
 
 def section(text: str, place: str = "A/B") -> Section:
@@ -86,15 +86,8 @@ def test_sections_know_their_place() -> None:
     assert [found.place for found in root.all("Z")] == ["Z 1", "Z 2"]
     assert root.count("Z") == 2
     assert root.find("W") is None
+    assert (root.get("W").place, len(root.get("W").element)) == ("W", 0)
+    assert root.get("X").need("Y").place == "X/Y"
     with pytest.raises(InputError, match="missing") as caught:
         root.need("X").need("W")
     assert caught.value.key == "X/W"
-
-
-def test_unsupported_features_make_one_error() -> None:
-    unsupported = Unsupported()
-    unsupported.check()
-    unsupported.add("A", "'1'")
-    unsupported.add("B", "'2'", "why")
-    with pytest.raises(InputError, match=r" A = '1'; B = '2' \(why\)$"):
-        unsupported.check()

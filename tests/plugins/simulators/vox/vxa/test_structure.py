@@ -59,16 +59,16 @@ def test_missing_offsets_are_0() -> None:
     ("data", "key", "problem"),
     [
         (["11"], "Structure/Data", r" 1 layers, .* Z_Voxels = 2$"),
-        (["11", "1"], "Structure/Data/Layer 2", " 1 cells, .* 2 x 1$"),
+        (["11", "1"], "Structure/Data/Layer 2", r" 1 cells, expected 2 .* 2 x 1\)$"),
         (
             ["11", "1:"],
             "Structure/Data/Layer 2",
-            r"cell ':' .* 10, .* 9, ",
+            r"cell 2 ':' .* 10, .* 9, ",
         ),
         (
             ["1/", "11"],
             "Structure/Data/Layer 1",
-            r"cell '/' .* -1, .* 9, ",
+            r"cell 2 '/' .* -1, .* 9, ",
         ),
         (["00", "00"], "Structure", "no voxels"),
     ],
@@ -82,8 +82,9 @@ def test_the_error_for_invalid_cells_names_their_layer(data: list[str], key: str
 @pytest.mark.parametrize(
     ("data", "key", "problem"),
     [
-        (["0,0,0"], "Structure/PhaseOffset/Layer 1", " 3 offsets, .* 2 x 1$"),
-        (["0,"], "Structure/PhaseOffset/Layer 1", " 1 offsets, .* 2 x 1$"),
+        (["0,0,0"], "Structure/PhaseOffset/Layer 1", " 3 offsets, .* 2 x 1 with commas between them$"),
+        (["0,"], "Structure/PhaseOffset/Layer 1", " 1 offset, .* 2 x 1 with commas between them$"),
+        (["0 0.5"], "Structure/PhaseOffset/Layer 1", " 1 offset, .* 2 x 1 with commas .*, found blanks$"),
         (["0,x"], "Structure/PhaseOffset/Layer 1", "offset 'x'"),
         (["0,1e7"], "Structure/PhaseOffset", r" 1e\+07 .* 1e\+06$"),
     ],

@@ -27,6 +27,13 @@ TRACKS = Record(("tip", "face", "body", "voxels", "energy", "strain", "momentum"
 OLDER = ("Environment/Fixed_Regions", "Environment/Forced_Regions")
 """Sections that only older files have."""
 
+VOXCRAFT = (
+    *(f"Simulator/{tag}" for tag in ("AttachDetach", "EnableCilia", "EnableSignals")),
+    *(f"Simulator/{tag}" for tag in ("SecondaryExperiment", "SelfReplication")),
+    *(f"VXC/Palette/Material/Mechanical/{tag}" for tag in ("Fixed", "LockZ", "sticky")),
+)
+"""Tags that only files of voxcraft have."""
+
 
 def read(path: Path) -> tuple[Vox, Design]:
     vox = structure(Vox.settings_of(path), Vox, ("simulator",))
@@ -139,12 +146,34 @@ class TestLeftOut:
             ("step_limit", 1000, "step_limit = 1000"),
             ("largest_strain", 2.0, "largest_strain = 2.0"),
             ("largest_distance", 2.0, "largest_distance = 2.0"),
+            ("falling_code", 3, "falling_code = 3"),
         ],
     )
     def test_names_options_without_a_tag(self, option: str, value: Any, named: str) -> None:
         changed: dict[str, Any] = {option: value}
         [left_out] = Vox(**changed).export(body(), "vxa").left_out
         assert left_out.endswith(f"({named})")
+
+    @pytest.mark.parametrize(
+        ("options", "named"),
+        [
+            ({"largest_size": 1.1}, ["largest_size"]),
+            ({"largest_size": 1.2}, []),
+            ({"largest_size": 5.0}, []),
+            ({"largest_size": 5.0, "expansion_coefficient": 0.2}, ["largest_size"]),
+            ({"largest_size": 1.0}, []),
+            ({"largest_size": 1.0, "size_rule": "clamp"}, ["size_rule"]),
+            ({"smallest_size": 0.9, "size_rule": "clamp"}, ["size_rule"]),
+            ({"smallest_size": 0.8, "size_rule": "clamp"}, []),
+            ({"fluid_drag": 1.0, "fluid_surface": "voxel-size"}, ["fluid_surface"]),
+            ({"fluid_surface": "voxel-size"}, []),
+        ],
+    )
+    def test_names_sizes_and_fluid_if_they_have_an_effect(
+        self, options: dict[str, Any], named: list[str]
+    ) -> None:
+        left_out = Vox(**options).export(body(), "vxa").left_out
+        assert [re.findall(r"\((\w+) = ", each)[0] for each in left_out] == named
 
     def test_omits_options_of_contacts_without_contacts(self) -> None:
         vox = Vox(self_collision=False, collision_envelope=1.0, contact_damping=0.1, contact_friction=True)
@@ -156,7 +185,8 @@ class TestLeftOut:
             *("phase_unit", "start_time", "gravity", "floor", "floor_slope", "fluid_drag", "fixed"),
             *("self_collision", "collision_horizon", "time_step_fraction", "bond_damping", "slow_damping"),
             *("collision_damping", "youngs_modulus", "poisson_ratio", "density", "expansion_coefficient"),
-            *("static_friction", "dynamic_friction"),
+            *("static_friction", "dynamic_friction", "smallest_size", "largest_size", "size_rule"),
+            "fluid_surface",
         }
         named = {case[0] for case in _cases(TestLeftOut.test_names_options_without_a_tag)}
         assert named | elsewhere == {field.name for field in attrs.fields(Vox)}
@@ -183,7 +213,7 @@ class TestFile:
         assert empty == {"Vertices", "Facets", "Lines"}  # of an empty mesh, as written by the authors
 
     def test_every_section_that_the_engine_reads_exists(self, root: etree._Element) -> None:
-        sections = {place for place in _sections(VXA) if not place.startswith(OLDER)}
+        sections = {place for place in _sections(VXA) if not place.startswith((*OLDER, *VOXCRAFT))}
         there = {root.getroottree().getelementpath(element) for element in root.iter() if len(element)}
         assert sections - {re.sub(r"\[\d+\]", "", place) for place in there} == set()
 
@@ -191,8 +221,26 @@ class TestFile:
         for place, value in _values(VXA):
             found = root.findall(place)
             assert all(float(element.text or "") == value for element in found)
-            if not place.endswith(("PlasticityEnabled", "FailureEnabled")):
+            if not place.endswith(("PlasticityEnabled", "FailureEnabled")) and not place.startswith(VOXCRAFT):
                 assert found, place
+
+    @pytest.mark.parametrize(
+        "options",
+        [
+            {"largest_size": 1.0},
+            {"smallest_size": 1.0},
+            {"smallest_size": 0.9},
+            {"falling_code": 7},
+            {"largest_size": 1.0, "smallest_size": 0.5, "falling_code": 7},
+        ],
+    )
+    def test_limits_of_sizes_and_falling_are_read_again(
+        self, options: dict[str, Any], tmp_path: Path
+    ) -> None:
+        vox = Vox(**options)
+        assert written(vox, body(), tmp_path / "a.vxa") == ()
+        again, _ = read(tmp_path / "a.vxa")
+        assert {name: getattr(again, name) for name in options} == options
 
     def test_numbers_have_all_their_digits(self) -> None:
         size = math.nextafter(0.1, 1)
@@ -236,7 +284,7 @@ class TestFile:
 
 class TestErrors:
     def test_another_format(self) -> None:
-        with pytest.raises(ConfigurationError, match=r"'stl'; .* vxa$"):
+        with pytest.raises(ConfigurationError, match=r"'stl'; .* vxa, npz$"):
             Vox().export(body(), "stl")
 
     @pytest.mark.parametrize(
