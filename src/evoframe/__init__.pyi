@@ -6,6 +6,7 @@ from .analysis.statistics import Correction as Correction
 from .config.layers import Layer as Layer
 from .config.resolve import load_config as load_config
 from .contract.config import (
+    ADDED_LATER as ADDED_LATER,
     Chosen as Chosen,
     PopulationConfig as PopulationConfig,
     RunConfig as RunConfig,

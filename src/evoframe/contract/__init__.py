@@ -2,6 +2,7 @@
 
 from evoframe.contract.blame import blaming
 from evoframe.contract.config import (
+    ADDED_LATER,
     COMPONENTS,
     POPULATION_COMPONENTS,
     Chosen,
@@ -66,6 +67,7 @@ from evoframe.contract.values import (
 from evoframe.contract.voxels import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE
 
 __all__ = [
+    "ADDED_LATER",
     "COMPONENTS",
     "CONTRACTILE",
     "CONTROLLER",
