@@ -35,11 +35,6 @@ _PASSIVE, _EXPANDING, _CONTRACTING = (0.0, 0.6, 0.8), (0.8, 0.2, 0.0), (0.0, 0.6
 # falling and fluid are below.
 _WITHOUT_TAG = (
     ("ramp", "the ramp at the start of the contraction", False),
-    ("smallest_size", "the smallest size of voxels", False),
-    ("largest_size", "the largest size of voxels", False),
-    ("size_rule", "the rule for sizes beyond a limit", False),
-    ("falling_code", "the material whose contact with the floor ends the motion", False),
-    ("fluid_surface", "the surface on which the fluid acts", False),
     ("substeps", "the substeps of time steps", False),
     ("collision_envelope", "the distance at which contacts start", True),
     ("contact_damping", "the damping of contacts", True),
@@ -65,11 +60,11 @@ def left_out(settings: VoxSettings) -> tuple[str, ...]:
     reach = _reach(settings)
     passed = 1.0 - reach < settings.smallest_size or 1.0 + reach > settings.largest_size
     if settings.largest_size not in (1.0, LARGEST) and 1.0 + reach > min(settings.largest_size, LARGEST):
-        found.append(("largest_size", "the limit of large sizes"))
+        found.append(("largest_size", "the largest size of voxels"))
     if settings.size_rule != "hold" and passed:
-        found.append(("size_rule", "the rule at the limits of sizes"))
+        found.append(("size_rule", "the rule for sizes beyond a limit"))
     if settings.falling_code not in (0, FALLING_CODE):
-        found.append(("falling_code", "the material that must not touch the floor"))
+        found.append(("falling_code", "the material whose contact with the floor ends the motion"))
     if settings.fluid_drag and settings.fluid_surface != "bond-strain":
         found.append(("fluid_surface", "the surface on which the fluid acts"))
     return tuple(f"{words} ({option} = {getattr(settings, option)})" for option, words in found)
