@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evoframe import (
+    SupportsDialects,
     SupportsExport,
     SupportsGeometry,
     SupportsProvenance,
@@ -24,6 +25,7 @@ def test_vox_is_offered_by_name() -> None:
 @pytest.mark.parametrize(
     "capability",
     [
+        SupportsDialects,
         SupportsExport,
         SupportsGeometry,
         SupportsProvenance,

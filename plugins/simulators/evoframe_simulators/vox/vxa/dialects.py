@@ -117,7 +117,8 @@ def recognize(root: Section, chosen: str = "") -> Reading:
         if chosen == dialect:
             return Reading(dialect, _engine(root, dialect), chosen=True)
     if chosen:
-        raise ConfigurationError(f"unknown dialect '{chosen}'; expected one of {', '.join(DIALECTS)}")
+        problem = f"unknown dialect '{chosen}'; expected one of {', '.join(DIALECTS)}"
+        raise ConfigurationError(problem, source="--dialect")
     for dialect, marks in _MARKS.items():
         mark = next((mark for mark in marks if _has(root, mark)), "")
         if mark:
