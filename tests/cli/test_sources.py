@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 import toys
 from processes import Evoframe
@@ -71,3 +72,106 @@ def test_a_run_is_not_a_configuration(evoframe: Evoframe, tmp_path: Path) -> Non
     refused = evoframe("run", "here")
     assert refused.returncode == 2
     assert refused.stderr.endswith("evoframe resume here\n")
+
+
+PRACTICE = Path(__file__).parents[1] / "data" / "vxa" / "practice"
+
+
+class TestFileOptions:
+    """Reading of files of other programs: ``--dialect`` and ``--base``, for all commands that read files."""
+
+    @pytest.fixture
+    def swimmer(self, tmp_path: Path) -> Path:
+        """A file whose weight depends on a dialect that it does not tell."""
+        text = (PRACTICE / "line_fluid_75000.vxa").read_text()
+        path = tmp_path / "swimmer.vxa"
+        path.write_text(
+            text.replace(
+                "<GravEnabled>0</GravEnabled><GravAcc>0<", "<GravEnabled>1</GravEnabled><GravAcc>-1<"
+            )
+        )
+        return path
+
+    @pytest.mark.parametrize(
+        "command",
+        [
+            ["simulate"],
+            ["verify"],
+            ["export", "--to", "npz", "--out", "-"],
+            ["robustness", "--controllers", "1"],
+        ],
+    )
+    def test_are_asked_for_by_name(self, evoframe: Evoframe, swimmer: Path, command: list[str]) -> None:
+        refused = evoframe(command[0], "swimmer.vxa", *command[1:])
+        assert refused.returncode == 2
+        assert refused.stderr.startswith("Error: swimmer.vxa: Environment/FluidEnvironment: ")
+        assert "--dialect fork or --dialect evosoro" in refused.stderr
+
+    def test_are_named_on_standard_error_and_in_json(self, evoframe: Evoframe, swimmer: Path) -> None:
+        scores = {}
+        for dialect in ("fork", "evosoro"):
+            shown = evoframe("simulate", "swimmer.vxa", "--dialect", dialect, "--json")
+            assert shown.stderr.startswith(f"swimmer.vxa: read by the rules of {dialect}")
+            assert json.loads(shown.stdout)["dialect"] == [dialect]
+            scores[dialect] = json.loads(shown.stdout)["score"]
+            [verified] = json.loads(evoframe("verify", "swimmer.vxa", "--dialect", dialect, "--json").stdout)
+            assert verified["dialect"] == dialect
+        assert scores["fork"] != scores["evosoro"]
+
+    def test_are_not_named_if_only_the_output_is_asked_for(self, evoframe: Evoframe, swimmer: Path) -> None:
+        assert evoframe("simulate", "-q", "swimmer.vxa", "--dialect", "fork").stderr == ""
+
+    def test_are_kept_with_a_measurement(self, evoframe: Evoframe, swimmer: Path, tmp_path: Path) -> None:
+        command = ["swimmer.vxa", "--dialect", "evosoro", "--controllers", "1", "--out", "measured"]
+        measured = evoframe("robustness", *command)
+        assert measured.returncode == 0, measured.stderr
+        assert "read by the rules of evosoro" in measured.stderr
+        kept = json.loads((tmp_path / "measured" / "robustness.json").read_text())
+        assert [body["dialect"] for body in kept["bodies"]] == ["evosoro"]
+
+    def test_complete_a_file(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        base, path = PRACTICE / "walker_ascii.vxa", PRACTICE / "walker.vxd"
+        shown = evoframe("simulate", path, "--base", base, "--json")
+        alone = evoframe("simulate", base, "--json")
+        assert json.loads(shown.stdout)["score"] == json.loads(alone.stdout)["score"]
+
+    def test_a_base_is_an_input_that_is_not_overwritten(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        (tmp_path / "b.vxa").write_bytes((PRACTICE / "walker_ascii.vxa").read_bytes())
+        command = ["simulate", PRACTICE / "walker.vxd", "--base", "b.vxa", "--trace", "b.vxa", "--force"]
+        refused = evoframe(*command)
+        assert (refused.returncode, "\nError: b.vxa: is an input" in refused.stderr) == (2, True)
+
+    @pytest.mark.parametrize("option", [["--dialect", "fork"], ["--base", "b.vxa"]])
+    def test_are_refused_for_sources_without_a_choice(
+        self, evoframe: Evoframe, tmp_path: Path, option: list[str]
+    ) -> None:
+        np.savez(tmp_path / "a.npz", material=np.ones((2, 2, 2), np.uint8), phase_cycles=np.zeros((2, 2, 2)))
+        refused = evoframe("simulate", "a.npz", *option)
+        assert (refused.returncode, refused.stderr.startswith(f"Error: {option[0]}: a.npz ")) == (2, True)
+
+    def test_an_unknown_dialect_is_refused_with_the_known_ones(self, evoframe: Evoframe) -> None:
+        refused = evoframe("simulate", PRACTICE / "walker_ascii.vxa", "--dialect", "voxcad")
+        assert refused.returncode == 2
+        assert "fork, evosoro, voxcraft" in refused.stderr
+
+
+def test_an_empty_body_does_not_refuse_the_others_of_its_file(evoframe: Evoframe, tmp_path: Path) -> None:
+    material = np.ones((2, 4, 2, 2), np.uint8)
+    material[0] = 0
+    np.savez(tmp_path / "two.npz", material=material, phase_cycles=np.zeros(material.shape))
+    shown = json.loads(evoframe("simulate", "two.npz", "--json").stdout)
+    assert (shown["diverged"], shown["diverged_at"]) == ([True, False], [0, None])
+    verified = evoframe("verify", "two.npz", "--json")
+    assert verified.returncode == 0, verified.stderr
+
+
+def test_a_body_is_exported_as_arrays_and_simulates_the_same(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "body.vxa").write_bytes((PRACTICE / "walker_ascii.vxa").read_bytes())
+    exported = evoframe("export", "body.vxa", "--to", "npz")
+    assert (exported.returncode, exported.stdout) == (0, "body.npz\n")
+    assert "not exported: the settings" in exported.stderr
+    again = np.load(tmp_path / "body.npz")
+    assert again["material"].shape == again["phase_cycles"].shape == (3, 2, 3)
+    first = (tmp_path / "body.npz").read_bytes()
+    assert evoframe("export", "body.vxa", "--to", "npz", "--force").returncode == 0
+    assert (tmp_path / "body.npz").read_bytes() == first

@@ -176,10 +176,11 @@ class Simulator(Protocol):
     outcome of a diverged simulation states the step of divergence.
 
     It may offer any of :class:`~evoframe.SupportsReading`,
-    :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsObjective`,
-    :class:`~evoframe.SupportsDuration`, :class:`~evoframe.SupportsExport`,
-    :class:`~evoframe.SupportsVariants`, :class:`~evoframe.SupportsGeometry`,
-    :class:`~evoframe.SupportsRandomControllers` and :class:`~evoframe.SupportsPublished`.
+    :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsDialects`,
+    :class:`~evoframe.SupportsObjective`, :class:`~evoframe.SupportsDuration`,
+    :class:`~evoframe.SupportsExport`, :class:`~evoframe.SupportsVariants`,
+    :class:`~evoframe.SupportsGeometry`, :class:`~evoframe.SupportsRandomControllers` and
+    :class:`~evoframe.SupportsPublished`.
     """
 
     @property

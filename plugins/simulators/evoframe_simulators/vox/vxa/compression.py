@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import binascii
 import zlib
 from collections.abc import Callable, Mapping
 from string import whitespace
@@ -74,7 +73,7 @@ def _deflated_by_qt(text: str, cells: int) -> NDArray[np.int64]:
 def _from_base64(text: str) -> bytes:
     try:
         return base64.b64decode("".join(text.split()), validate=True)
-    except (binascii.Error, ValueError) as error:
+    except ValueError as error:
         raise InputError("is not in BASE64") from error
 
 

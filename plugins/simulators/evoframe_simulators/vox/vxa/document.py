@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import re
 from pathlib import Path
 
@@ -18,10 +17,10 @@ _LONGEST_SHOWN = 60
 
 # Beginnings of an XML document in encodings of more than one byte for a character, the longer ones first.
 _WIDE = (
-    *((start, "utf-32-le") for start in (codecs.BOM_UTF32_LE, b"<\0\0\0")),
-    *((start, "utf-32-be") for start in (codecs.BOM_UTF32_BE, b"\0\0\0<")),
-    *((start, "utf-16-le") for start in (codecs.BOM_UTF16_LE, b"<\0")),
-    *((start, "utf-16-be") for start in (codecs.BOM_UTF16_BE, b"\0<")),
+    *((start, "utf-32-le") for start in (b"\xff\xfe\0\0", b"<\0\0\0")),
+    *((start, "utf-32-be") for start in (b"\0\0\xfe\xff", b"\0\0\0<")),
+    *((start, "utf-16-le") for start in (b"\xff\xfe", b"<\0")),
+    *((start, "utf-16-be") for start in (b"\xfe\xff", b"\0<")),
 )
 _DECLARED = re.compile(r"<\?xml[^>]*?\sencoding\s*=\s*[\"']([A-Za-z0-9._-]{1,40})[\"']")
 
