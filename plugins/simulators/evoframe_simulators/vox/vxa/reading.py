@@ -50,8 +50,8 @@ def read_vxa(path: Path, dialect: str = "", base: Path | None = None, given: Col
         ConfigurationError: There is no such dialect, or a VXA file has a base.
     """
     document = read_document(path, base)
-    rules = recognize(document.root, dialect)
     with naming_source(path):
+        rules = recognize(document.root, dialect)
         return _Reader(document, rules, given, Faults()).file()
 
 

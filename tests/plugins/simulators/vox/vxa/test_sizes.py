@@ -22,11 +22,11 @@ def sizes(
     engine: Engine, environment: str = "", simulator: str = "", strains: tuple[float, ...] = BOTH
 ) -> tuple[tuple[Any, ...], Faults]:
     faults = Faults()
-    sections = (
+    one, other = (
         Section(etree.fromstring(f"<{name}>{text}</{name}>"), name)
         for name, text in (("Simulator", simulator), ("Environment", environment))
     )
-    options = read_sizes(*sections, strains, engine, faults)
+    options = read_sizes(one, other, strains, engine, faults)
     return (options["smallest_size"], options["largest_size"], options["size_rule"]), faults
 
 
