@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import attrs
 import pytest
@@ -46,7 +47,8 @@ class TestUnscored:
         made = run(toy_config("simulator=toy-varied", "objective=toy-late"), out=tmp_path / "run")
         job = attrs.evolve(read_job(made, None, (), toy_plugins), unscored="ends too early")
         assert simulate_job(job) == [Score(None)]
-        small = attrs.evolve(job.config.simulator.component, limit=0.0)
+        simulator: Any = job.config.simulator.component
+        small = attrs.evolve(simulator, limit=0.0)
         chosen = attrs.evolve(job.config.simulator, component=small)
         diverging = attrs.evolve(job, config=attrs.evolve(job.config, simulator=chosen))
         assert simulate_job(diverging) == [Score(None, 1)]

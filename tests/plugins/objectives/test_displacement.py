@@ -66,7 +66,9 @@ def path(points: int) -> Outcome:
     """Return an outcome whose tip rises by one more in each step."""
     steps = np.arange(1, points + 1)
     heights = np.cumsum(steps, dtype=np.float64)
-    return Outcome(steps, 0.5 * steps, {"tip": np.outer(heights, [0.0, 0.0, 1.0])})
+    return Outcome(
+        steps, np.multiply(steps, 0.5, dtype=np.float64), {"tip": np.outer(heights, [0.0, 0.0, 1.0])}
+    )
 
 
 class TestToTheEnd:
