@@ -105,6 +105,29 @@ class TestFile:
         assert exported.stdout == "one.txt\n"
         assert (tmp_path / "one.txt").read_text() == "{'a': 2.0}\n"
 
+    def test_is_not_overwritten_by_itself(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        path = tmp_path / "one.toy"
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        path.write_text("# mine\ndesigns = [{ a = 2.0 }]\nsettings = { gain = 2.0 }\n")
+        before = path.read_bytes()
+        command = ["export", *TOYS, "one.toy", "--to", "toy", "--preset", "toy.toml", "--force"]
+        command += ["--set", "simulator=toy-varied"]
+        for out in ([], ["--out", "./one.toy"], ["--out", "toy.toml"]):
+            refused = evoframe(*command, *out)
+            assert refused.returncode == 2
+            assert "is an input" in refused.stderr
+        assert path.read_bytes() == before
+        assert (tmp_path / "toy.toml").read_text() == toys.CONFIGURATION
+
+    def test_that_is_too_short_for_the_objective_is_exported(
+        self, evoframe: Evoframe, tmp_path: Path
+    ) -> None:
+        path = tmp_path / "body.npz"
+        np.savez(path, material=np.ones((3, 2, 2), np.uint8), phase_cycles=np.zeros((3, 2, 2)))
+        exported = evoframe("export", path, "--to", "vxa", "--set", "simulator.duration=0.01")
+        assert exported.returncode == 0, exported.stderr
+        assert "0.01" in path.with_suffix(".vxa").read_text()
+
     def test_with_several_designs_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
         path = tmp_path / "bodies.npz"
         np.savez(path, material=np.ones((2, 3, 2, 2), np.uint8), phase_cycles=np.zeros((2, 3, 2, 2)))

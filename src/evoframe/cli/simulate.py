@@ -103,7 +103,7 @@ def simulate(
                     f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}"
                 )
     for job, scores in scored_jobs:
-        warn_overlooked(ctx, job, scores)
+        warn_overlooked(ctx, job.path, job.config, job.designs, scores)
 
 
 @attrs.frozen

@@ -68,7 +68,8 @@ def verify(
         for job, verifications in found:
             _print(job, verifications)
     for job, verifications in found:
-        warn_overlooked(ctx, job, [each.unchanged for each in verifications])
+        unchanged = [each.unchanged for each in verifications]
+        warn_overlooked(ctx, job.path, job.config, job.designs, unchanged)
     for job, verifications in found:  # after printing, which needs no writable directory
         keep_of_job(job, verifications)
 
