@@ -262,6 +262,14 @@ class TestTracePath:
         assert contents(tmp_path / "here") == before
         assert evoframe("simulate", "here", "--trace", "here/trace.csv").returncode == 0
 
+    def test_is_standard_output_unless_that_has_json(self, evoframe: Evoframe, one_body: Path) -> None:
+        printed = evoframe("simulate", one_body, "--trace", "-").stdout.splitlines()
+        assert printed[0].startswith("step,time,")
+        assert printed[-1].split()[0] == "body.npz"
+        refused = evoframe("simulate", one_body, "--trace", "-", "--json")
+        assert (refused.returncode, refused.stdout) == (2, "")
+        assert refused.stderr.startswith("Error: --trace -: ")
+
     def test_with_other_content_is_kept_without_force(
         self, evoframe: Evoframe, one_body: Path, tmp_path: Path
     ) -> None:

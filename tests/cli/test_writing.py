@@ -28,6 +28,27 @@ def test_different_content_is_overwritten_only_with_force(tmp_path: Path) -> Non
     assert path.read_bytes() == b"after"
 
 
+@pytest.mark.parametrize("before", [None, b"before"])
+def test_a_link_is_followed_and_remains(tmp_path: Path, before: bytes | None) -> None:
+    target, link = tmp_path / "target", tmp_path / "link"
+    link.symlink_to(target)
+    if before is not None:
+        target.write_bytes(before)
+        with pytest.raises(InputError):
+            write_file(link, b"text", force=False)
+    write_file(link, b"text", force=before is not None)
+    assert link.is_symlink()
+    assert target.read_bytes() == b"text"
+
+
+def test_a_loop_of_links_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "loop"
+    path.symlink_to(path)
+    with pytest.raises(InputError) as caught:
+        write_file(path, b"text", force=True)
+    assert caught.value.source == str(path)
+
+
 class TestInputs:
     @pytest.fixture
     def given(self, tmp_path: Path) -> Path:

@@ -201,8 +201,8 @@ def preset_option(function: F) -> F:
         "--preset",
         metavar="P",
         shell_complete=_complete_preset,
-        help="Preset (or TOML file) for settings that the file does not contain. With a run, replaces the "
-        "run's settings.  [default: the run's settings; paper for other files]",
+        help="Preset (or TOML file) for settings that the file does not contain, and for the objective. With "
+        "a run, replaces the run's settings.  [default: the run's settings; paper for other files]",
     )(function)
 
 

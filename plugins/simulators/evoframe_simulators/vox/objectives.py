@@ -8,6 +8,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from evoframe_simulators.vox.models import possible_clocks
 from evoframe_simulators.vox.regions import FixedRegion, fixed_mask
 from evoframe_simulators.vox.settings import VoxSettings
 
@@ -16,6 +17,7 @@ __all__ = ["Motion", "motion_of", "objective_of"]
 Motion: TypeAlias = Literal["face", "tip", "body"]
 """The point whose motion describes that of a body."""
 
+_MOST_SAMPLES = 1_000_000
 _HELD = FixedRegion(degrees_of_freedom=("x", "y", "z")).bits
 
 
@@ -30,12 +32,19 @@ def objective_of(settings: VoxSettings, bodies: Iterable[NDArray[np.uint8]]) -> 
         settings: Settings of the simulation.
         bodies: Materials of the bodies, each ``uint8[X, Y, Z]``; those without voxels do not matter.
     """
+    every = _interval(settings)
     motions = {motion_of(settings, material) for material in bodies if material.any()}
     if motions in ({"face"}, {"tip"}):
         [point] = motions
-        return {"name": f"{point}-yz", "every": 0.0, "first": 0, "last": -1}
+        return {"name": f"{point}-yz", "every": every, "first": 0, "last": -1}
     after = settings.start_time if settings.start_time < settings.duration else 0.0
-    return {"name": "travel", "along": "xy", "every": 0.0, "after": after}
+    return {"name": "travel", "along": "xy", "every": every, "after": after}
+
+
+def _interval(settings: VoxSettings) -> float:
+    """Return 0, or if a body can have very many steps, an interval with which its samples fit into memory."""
+    steps = max(clock.steps for clock in possible_clocks(settings))
+    return settings.duration / _MOST_SAMPLES if steps > _MOST_SAMPLES else 0.0
 
 
 def motion_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Motion:

@@ -99,6 +99,15 @@ class TestObjective:
         assert objective_of(settings, [BAR]) == {**expected, "after": 0.02}
         assert objective_of(attrs.evolve(settings, start_time=0.07), [BAR]) == {**expected, "after": 0.0}
 
+    def test_of_a_very_long_simulation_has_a_bounded_number_of_samples(self) -> None:
+        long = attrs.evolve(FREE, duration=5e4, step_limit=10**12)
+        table = objective_of(long, [BAR])
+        assert table["every"] == 0.05
+        steps = Vox(duration=5e4, step_limit=10**12, fixed=()).duration_of(
+            Design({"morphology": BAR, "controller": np.zeros(BAR.shape)})
+        )
+        assert 9e5 < steps / table["every"] < 1.1e6
+
     def test_of_several_bodies_fits_all(self) -> None:
         short = BAR.copy()
         short[0] = 0
