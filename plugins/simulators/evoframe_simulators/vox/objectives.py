@@ -18,7 +18,7 @@ Motion: TypeAlias = Literal["face", "tip", "body"]
 """The point whose motion describes that of a body."""
 
 _MOST_SAMPLES = 1_000_000
-_HELD = FixedRegion(degrees_of_freedom=("x", "y", "z")).bits
+_X, _Y, _Z = (FixedRegion(degrees_of_freedom=(axis,)).bits for axis in ("x", "y", "z"))
 
 
 def objective_of(settings: VoxSettings, bodies: Iterable[NDArray[np.uint8]]) -> dict[str, Any]:
@@ -50,8 +50,8 @@ def _interval(settings: VoxSettings) -> float:
 def motion_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Motion:
     """Return the point that moves with a body's deformation: ``body`` if no other point does.
 
-    A voxel is held if all its translations are fixed. ``body`` follows if no voxel is held, or if the free
-    face and the tip are held themselves.
+    A body is held if both horizontal directions are fixed, each for some voxel. ``body`` follows if it is not
+    held, or if neither the free face nor the tip can move in the yz plane.
 
     Args:
         settings: Settings of the simulation.
@@ -59,11 +59,11 @@ def motion_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Motion:
     """
     x, y, z = material.shape
     present = material > 0
-    held = present & (fixed_mask(settings.fixed, (x, y, z)) & _HELD == _HELD)
-    if not held.any():
+    fixed = np.where(present, fixed_mask(settings.fixed, (x, y, z)), 0)
+    if not (fixed & _X).any() or not (fixed & _Y).any():
         return "body"
-    face = np.flatnonzero(present.any(axis=(1, 2)))[-1]
-    if (present[face] & ~held[face]).any():
+    moves = present & (fixed & (_Y | _Z) != _Y | _Z)
+    if moves[np.flatnonzero(present.any(axis=(1, 2)))[-1]].any():
         return "face"
     tip = tuple(np.argwhere(present.transpose(2, 1, 0))[-1][::-1])  # the last voxel if x varies fastest
-    return "body" if held[tip] else "tip"
+    return "tip" if moves[tip] else "body"

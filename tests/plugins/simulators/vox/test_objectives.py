@@ -20,6 +20,10 @@ BAR = np.ones((4, 2, 2), np.uint8)
 TOP = FixedRegion(origin=(0.0, 0.0, 0.9), size=(1.0, 1.0, 0.1))
 FRONT = FixedRegion(origin=(0.9, 0.0, 0.0), size=(0.1, 1.0, 1.0))
 ROLLER = FixedRegion(size=(1.0, 1.0, 1.0), degrees_of_freedom=("z", "rx"))
+RAIL = FixedRegion(size=(1.0, 1.0, 1.0), degrees_of_freedom=("x", "y"))
+CEILING = FixedRegion(size=(1.0, 1.0, 1.0), degrees_of_freedom=("z",))
+SLIDE = FixedRegion(degrees_of_freedom=("x", "z"))
+GUIDE = FixedRegion(origin=(0.9, 0.0, 0.0), size=(0.1, 0.5, 0.5), degrees_of_freedom=("y",))
 HINGE = FixedRegion(degrees_of_freedom=("x", "y", "z"))
 
 
@@ -39,6 +43,10 @@ def with_a_tower() -> Any:
         (Vox(fixed=(FRONT,)), BAR, "body"),
         (Vox(fixed=(FRONT,)), with_a_tower(), "tip"),
         (Vox(fixed=(ROLLER,)), BAR, "body"),
+        (Vox(fixed=(RAIL,)), BAR, "face"),
+        (Vox(fixed=(RAIL, CEILING)), BAR, "body"),
+        (Vox(fixed=(SLIDE,)), BAR, "body"),
+        (Vox(fixed=(SLIDE, GUIDE)), BAR, "face"),
         (FREE, BAR, "body"),
     ],
 )
