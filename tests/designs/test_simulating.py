@@ -84,6 +84,11 @@ class TestOverlooked:
         config = toy_config("simulator={name='toy-suggesting', duration=0.75}")
         assert overlooked(config, [Design()], scores) == Overlooked(0.5, 0.75)
 
+    def test_is_nothing_if_the_times_differ_by_rounding(self, toy_config: Load) -> None:
+        config = toy_config("simulator={name='toy-suggesting', duration=0.3}")
+        for last in (0.3, 0.1 + 0.2, 0.3 * (1 - 1e-12)):
+            assert overlooked(config, [Design()], [Score(1.0, window=(0.0, last))]) is None
+
     @pytest.mark.parametrize(
         ("last", "end", "text"),
         [
