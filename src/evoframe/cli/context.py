@@ -19,8 +19,7 @@ from evoframe.messages import quantity
 
 if TYPE_CHECKING:
     from evoframe.config import Layer
-    from evoframe.contract import Score
-    from evoframe.designs import Job
+    from evoframe.contract import Design, RunConfig, Score
     from evoframe.registry import Plugins
 
 __all__ = [
@@ -141,13 +140,15 @@ def span(window: tuple[float, float] | None) -> str:
     return "-" if window is None else f"{window[0]:.3g} s to {window[1]:.3g} s"
 
 
-def warn_overlooked(ctx: click.Context, job: Job, scores: Sequence[Score]) -> None:
-    """Warn if the designs of a job are simulated for longer than their objective looks at."""
+def warn_overlooked(
+    ctx: click.Context, source: object, config: RunConfig, designs: Sequence[Design], scores: Sequence[Score]
+) -> None:
+    """Warn if designs of a *source* are simulated for longer than their objective looks at."""
     from evoframe.designs import overlooked
 
-    found = overlooked(job.config, job.designs, scores)
+    found = overlooked(config, designs, scores)
     if found is not None and not is_quiet(ctx):
-        click.echo(f"Warning: {job.path}: the objective '{job.config.objective.name}' {found}", err=True)
+        click.echo(f"Warning: {source}: the objective '{config.objective.name}' {found}", err=True)
 
 
 def is_quiet(ctx: click.Context) -> bool:
@@ -200,8 +201,8 @@ def preset_option(function: F) -> F:
         "--preset",
         metavar="P",
         shell_complete=_complete_preset,
-        help="Preset (or TOML file) for settings that the file does not contain. With a run, replaces the "
-        "run's settings.  [default: the run's settings; paper for other files]",
+        help="Preset (or TOML file) for settings that the file does not contain, and for the objective. With "
+        "a run, replaces the run's settings.  [default: the run's settings; paper for other files]",
     )(function)
 
 

@@ -23,7 +23,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, files_of, read_jobs
-from evoframe.cli.writing import files_of_settings, force_option, refuse_inputs, write_file
+from evoframe.cli.writing import STDOUT, files_of_settings, force_option, refuse_inputs, write_file
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
 from evoframe.designs import Job, naming, simulate_job, trace_of
@@ -86,6 +86,8 @@ def simulate(
     the last step: a body that is held somewhere by the displacement of its free face, a free body by the
     distance that it travels. A simulation that is too short for the objective has no score.
     """
+    if as_json and trace == STDOUT:
+        raise InputError("expected a file, since --json prints to standard output", source="--trace -")
     jobs = read_jobs(ctx, files, preset, [*overrides, *workers], scored=False)
     if trace is not None:
         inputs = [*files_of(ctx, files), *files_of_settings(ctx, preset)]
@@ -114,7 +116,7 @@ def simulate(
                     f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}"
                 )
     for job, scores in scored_jobs:
-        warn_overlooked(ctx, job, scores)
+        warn_overlooked(ctx, job.path, job.config, job.designs, scores)
 
 
 @attrs.frozen

@@ -69,7 +69,8 @@ def verify(
         for job, verifications in found:
             _print(job, verifications)
     for job, verifications in found:
-        warn_overlooked(ctx, job, [each.unchanged for each in verifications])
+        unchanged = [each.unchanged for each in verifications]
+        warn_overlooked(ctx, job.path, job.config, job.designs, unchanged)
     for job, verifications in found:  # after printing, which needs no writable directory
         keep_of_job(job, verifications)
 
@@ -84,12 +85,17 @@ def _print(job: Job, verifications: Sequence[Verification]) -> None:
     console = output()
     for label, design, verification in zip(job.labels, job.designs, verifications, strict=True):
         console.print(label, style="bold", soft_wrap=True)
-        measure = f"{job.config.objective.name} ({unit_name(verification.unit)})"
-        if verification.unchanged.window is not None:
-            measure += f", measured from {span(verification.unchanged.window)}"
-        console.print(measure, soft_wrap=True)
+        console.print(_measure(job, verification), soft_wrap=True)
         console.print(verification_table(verification))
         console.print(verdict(verification, job.config, design), soft_wrap=True)
+
+
+def _measure(job: Job, verification: Verification) -> str:
+    """Return the objective, its unit, and the times between which it measures the unchanged design."""
+    unit, window = unit_name(verification.unit), verification.unchanged.window
+    parts = [f"objective {job.config.objective.name}"]
+    parts += [f"in {unit}"] if unit else []
+    return ", ".join([*parts, *([f"from {span(window)}"] if window else [])])
 
 
 def verification_table(verification: Verification) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -80,11 +81,14 @@ def write_file(path: Path, data: bytes, *, force: bool, inputs: Iterable[Path] =
                     "exists with different content; overwrite it with --force, or choose another name",
                     source=path,
                 )
-            write_atomically(path, data)
+            target = Path(os.path.realpath(path))  # a link remains, and leads to the file
+            if target.is_symlink():
+                raise InputError("is a link that leads to itself", source=path)
+            write_atomically(target, data)
     except OSError as error:
         raise InputError(f"cannot be written: {error.strerror}", source=path) from error
     except RunError as error:
-        raise InputError(error.problem, source=error.source, key=error.key) from error
+        raise InputError(error.problem, source=path) from error
 
 
 def _is_same_file(path: Path, other: Path) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 
 import attrs
@@ -22,7 +21,7 @@ from evoframe.evolution import evaluator_of
 
 __all__ = ["Overlooked", "overlooked", "simulate_job", "trace_of"]
 
-_ROUNDING = 1e-9  # relative; tolerance for an interval that ends with the simulation
+_ROUNDING = 1e-9  # relative
 
 
 def simulate_job(job: Job) -> list[Score]:
@@ -99,9 +98,9 @@ def overlooked(config: RunConfig, designs: Sequence[Design], scores: Sequence[Sc
         if score.window is not None:
             with blaming("simulator"):
                 end = simulator.duration_of(design)
-            last = score.window[1]
-            if end - last >= max(interval, math.ulp(0.0)) * (1 - _ROUNDING):
-                found.append(Overlooked(last, end))
+            left = end - score.window[1]
+            if left >= interval * (1 - _ROUNDING) and left > end * _ROUNDING:
+                found.append(Overlooked(score.window[1], end))
     return max(found, key=lambda each: each.end - each.last, default=None)
 
 

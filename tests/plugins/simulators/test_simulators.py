@@ -6,8 +6,10 @@ import pytest
 
 from evoframe import (
     SupportsDialects,
+    SupportsDuration,
     SupportsExport,
     SupportsGeometry,
+    SupportsObjective,
     SupportsProvenance,
     SupportsPublished,
     SupportsRandomControllers,
@@ -26,8 +28,10 @@ def test_vox_is_offered_by_name() -> None:
     "capability",
     [
         SupportsDialects,
+        SupportsDuration,
         SupportsExport,
         SupportsGeometry,
+        SupportsObjective,
         SupportsProvenance,
         SupportsPublished,
         SupportsRandomControllers,

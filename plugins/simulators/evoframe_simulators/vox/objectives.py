@@ -8,6 +8,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from evoframe_simulators.vox.models import possible_clocks
 from evoframe_simulators.vox.regions import FixedRegion, fixed_mask
 from evoframe_simulators.vox.settings import VoxSettings
 
@@ -16,7 +17,8 @@ __all__ = ["Motion", "motion_of", "objective_of"]
 Motion: TypeAlias = Literal["face", "tip", "body"]
 """The point whose motion describes that of a body."""
 
-_HELD = FixedRegion(degrees_of_freedom=("x", "y", "z")).bits
+_MOST_SAMPLES = 1_000_000
+_X, _Y, _Z = (FixedRegion(degrees_of_freedom=(axis,)).bits for axis in ("x", "y", "z"))
 
 
 def objective_of(settings: VoxSettings, bodies: Iterable[NDArray[np.uint8]]) -> dict[str, Any]:
@@ -30,19 +32,26 @@ def objective_of(settings: VoxSettings, bodies: Iterable[NDArray[np.uint8]]) -> 
         settings: Settings of the simulation.
         bodies: Materials of the bodies, each ``uint8[X, Y, Z]``; those without voxels do not matter.
     """
+    every = _interval(settings)
     motions = {motion_of(settings, material) for material in bodies if material.any()}
     if motions in ({"face"}, {"tip"}):
         [point] = motions
-        return {"name": f"{point}-yz", "every": 0.0, "first": 0, "last": -1}
+        return {"name": f"{point}-yz", "every": every, "first": 0, "last": -1}
     after = settings.start_time if settings.start_time < settings.duration else 0.0
-    return {"name": "travel", "along": "xy", "every": 0.0, "after": after}
+    return {"name": "travel", "along": "xy", "every": every, "after": after}
+
+
+def _interval(settings: VoxSettings) -> float:
+    """Return 0, or if a body can have very many steps, an interval with which its samples fit into memory."""
+    steps = max(clock.steps for clock in possible_clocks(settings))
+    return settings.duration / _MOST_SAMPLES if steps > _MOST_SAMPLES else 0.0
 
 
 def motion_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Motion:
     """Return the point that moves with a body's deformation: ``body`` if no other point does.
 
-    A voxel is held if all its translations are fixed. ``body`` follows if no voxel is held, or if the free
-    face and the tip are held themselves.
+    A body is held if both horizontal directions are fixed, each for some voxel. ``body`` follows if it is not
+    held, or if neither the free face nor the tip can move in the yz plane.
 
     Args:
         settings: Settings of the simulation.
@@ -50,11 +59,11 @@ def motion_of(settings: VoxSettings, material: NDArray[np.uint8]) -> Motion:
     """
     x, y, z = material.shape
     present = material > 0
-    held = present & (fixed_mask(settings.fixed, (x, y, z)) & _HELD == _HELD)
-    if not held.any():
+    fixed = np.where(present, fixed_mask(settings.fixed, (x, y, z)), 0)
+    if not (fixed & _X).any() or not (fixed & _Y).any():
         return "body"
-    face = np.flatnonzero(present.any(axis=(1, 2)))[-1]
-    if (present[face] & ~held[face]).any():
+    moves = present & (fixed & (_Y | _Z) != _Y | _Z)
+    if moves[np.flatnonzero(present.any(axis=(1, 2)))[-1]].any():
         return "face"
     tip = tuple(np.argwhere(present.transpose(2, 1, 0))[-1][::-1])  # the last voxel if x varies fastest
-    return "body" if held[tip] else "tip"
+    return "tip" if moves[tip] else "body"
