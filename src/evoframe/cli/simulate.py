@@ -49,9 +49,9 @@ Examples:
     "as_json",
     is_flag=True,
     help="Print JSON with full precision: the lists labels, score, objective, unit, first_time and last_time "
-    "(s, between which the score is measured), diverged, diverged_at, missing (reason why there is no "
-    "score) and dialect (by whose rules the file was read) with one entry for each design; if every unit is "
-    "m, also displacement, equal to score.",
+    "(s, between which the score is measured), diverged, diverged_at and missing (reason why there is no "
+    "score) with one entry for each design; if every unit is m, also displacement, equal to score; if files "
+    "have dialects, also dialect.",
 )
 @click.option(
     "--trace",
@@ -146,7 +146,7 @@ class _Body:
 def _document(bodies: list[_Body]) -> dict[str, Any]:
     """Return parallel lists with one entry for each body."""
     values = [body.score.value for body in bodies]
-    document = {
+    document: dict[str, Any] = {
         "labels": [body.label for body in bodies],
         "score": values,
         "objective": [body.objective for body in bodies],
@@ -156,8 +156,9 @@ def _document(bodies: list[_Body]) -> dict[str, Any]:
         "diverged": [body.score.diverged_at is not None for body in bodies],
         "diverged_at": [body.score.diverged_at for body in bodies],
         "missing": [body.unscored or None for body in bodies],
-        "dialect": [body.dialect or None for body in bodies],
     }
+    if any(body.dialect for body in bodies):
+        document["dialect"] = [body.dialect or None for body in bodies]
     return {**document, "displacement": values} if _are_lengths(bodies) else document
 
 

@@ -78,7 +78,8 @@ def verify(
 def _document(job: Job, label: str, verification: Verification) -> dict[str, Any]:
     first, last = verification.unchanged.window or (None, None)
     measure = {"objective": job.config.objective.name, "first_time": first, "last_time": last}
-    return {"body": label, "dialect": job.dialect or None, **measure, **verification.to_json()}
+    dialect = {"dialect": job.dialect} if job.dialect else {}
+    return {"body": label, **dialect, **measure, **verification.to_json()}
 
 
 def _print(job: Job, verifications: Sequence[Verification]) -> None:
