@@ -12,6 +12,7 @@ import pytest
 import toys
 
 from evoframe import ConfigurationError, InputError, Run, RunConfig, discover, run
+from evoframe.contract import FileOptions
 from evoframe.designs.sources import read_job
 from evoframe.registry.registry import Plugins
 
@@ -207,6 +208,18 @@ class TestRun:
         expected = finished.champion().score if same else None
         for path in (finished.directory, finished.directory / "champion.json"):
             assert read_job(path, None, overrides, plugins).score == expected
+
+    @pytest.mark.parametrize(
+        ("options", "name"),
+        [(FileOptions(dialect="fork"), "--dialect"), (FileOptions(base=Path("base.vxa")), "--base")],
+    )
+    def test_has_no_dialect_and_no_base(
+        self, plugins: Plugins, finished: Run, options: FileOptions, name: str
+    ) -> None:
+        for path in (finished.directory, finished.directory / "champion.json"):
+            with pytest.raises(ConfigurationError, match="read in one way only") as caught:
+                read_job(path, None, [], plugins, options=options)
+            assert caught.value.source == name
 
     def test_is_simulated_with_a_given_preset(
         self, plugins: Plugins, finished: Run, varied: str, toy_file: Path

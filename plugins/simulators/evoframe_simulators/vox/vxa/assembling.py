@@ -92,10 +92,8 @@ def _vxa(path: Path) -> etree._Element:
 
 def _sibling(path: Path) -> Path:
     """Return the base of a VXD file in its directory."""
-    try:
+    with naming_source(path.parent):
         found = sorted(each for each in path.parent.iterdir() if each.suffix.lower() == ".vxa")
-    except OSError as error:
-        raise InputError(f"its directory cannot be read: {error.strerror}", source=path) from error
     named = [each for each in found if each.name.lower() == "base.vxa"] or found
     if len(named) != 1:
         problem = "no VXA file is beside it" if not named else f"{len(named)} VXA files are beside it"

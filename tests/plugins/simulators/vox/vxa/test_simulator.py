@@ -99,6 +99,12 @@ def test_a_time_a_number_of_periods_and_a_number_of_steps_end_it() -> None:
     assert stop(kind(1, 7.4))[:2] == ({"start_time": 0.0}, 8)
 
 
+def test_a_number_of_steps_without_end_is_refused() -> None:
+    with pytest.raises(InputError, match=r"found 1e\+13 steps, expected at most 1e\+12") as caught:
+        stop(kind(1, 1e13))
+    assert caught.value.key == "Simulator/StopCondition/StopConditionValue"
+
+
 @pytest.mark.parametrize("number", [4, 5, 6])
 def test_ends_by_energy_are_not_simulated(number: int) -> None:
     with pytest.raises(InputError) as caught:
