@@ -20,11 +20,13 @@ from .contract.drawings import (
     NetworkLink as NetworkLink,
 )
 from .contract.optional import (
+    SupportsDuration as SupportsDuration,
     SupportsExemptions as SupportsExemptions,
     SupportsExport as SupportsExport,
     SupportsGeometry as SupportsGeometry,
     SupportsGraph as SupportsGraph,
     SupportsInputNames as SupportsInputNames,
+    SupportsObjective as SupportsObjective,
     SupportsOutputNames as SupportsOutputNames,
     SupportsProvenance as SupportsProvenance,
     SupportsPublished as SupportsPublished,
@@ -33,6 +35,7 @@ from .contract.optional import (
     SupportsSettings as SupportsSettings,
     SupportsUnit as SupportsUnit,
     SupportsVariants as SupportsVariants,
+    SupportsWindow as SupportsWindow,
     Variant as Variant,
 )
 from .contract.protocols import (

@@ -45,3 +45,14 @@ def test_config_new_overwrites_nothing_unasked(evoframe: Evoframe, tmp_path: Pat
     assert (tmp_path / "my.toml").read_text() == "[run]\nseed = 2\n"
     assert evoframe("config", "new", "my.toml", "--force").returncode == 0
     assert (tmp_path / "my.toml").read_text() != "[run]\nseed = 2\n"
+
+
+def test_config_new_never_overwrites_the_preset_that_it_reads(evoframe: Evoframe, tmp_path: Path) -> None:
+    text = "[run]\nseed = 2\n"
+    (tmp_path / "base.toml").write_text(text)
+    (tmp_path / "my.toml").write_text('extends = "base.toml"\n')
+    for name in ("my.toml", "base.toml"):
+        refused = evoframe("config", "new", name, "--preset", "my.toml", "--force")
+        assert refused.returncode == 2
+        assert refused.stderr.startswith(f"Error: {name}: is an input")
+    assert (tmp_path / "base.toml").read_text() == text

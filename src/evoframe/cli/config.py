@@ -13,7 +13,7 @@ from evoframe.cli.context import (
     plugins_of,
     set_option,
 )
-from evoframe.cli.writing import STDOUT, write_file
+from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
 from evoframe.config import commented, load_config, starter
 
 __all__ = ["config"]
@@ -53,7 +53,7 @@ Examples:
 )
 @click.argument("path", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True))
 @click.option("--preset", default="paper", show_default=True, metavar="P", help="Preset to start from.")
-@click.option("--force", is_flag=True, help="Overwrite a file with different content.")
+@force_option
 @common_options
 @click.pass_context
 def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
@@ -63,6 +63,6 @@ def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
     its value in the preset.
     """
     text = starter(load_config(preset, plugins=plugins_of(ctx)), preset)
-    write_file(path, text.encode(), force=force)
+    write_file(path, text.encode(), force=force, inputs=files_of_settings(ctx, preset))
     if path != STDOUT:
         click.echo(f"To run it: {command(ctx, 'run', path)}", err=True)

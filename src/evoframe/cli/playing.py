@@ -8,7 +8,7 @@ import signal
 import click
 from rich.table import Table
 
-from evoframe.cli.context import command, is_quiet, output, scored
+from evoframe.cli.context import command, is_quiet, output, scored, warn_overlooked
 from evoframe.cli.progress import Progress
 from evoframe.cli.signals import ended_by_signal, exit_code, stop_on_signals
 from evoframe.cli.verify import verification_table
@@ -62,10 +62,11 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
     if quiet:
         return
     if verification is not None:
-        console = output()
+        console, design = output(), run.champion().design
         console.print()
         console.print(verification_table(verification))
-        console.print(verdict(verification, config, run.champion().design), soft_wrap=True)
+        console.print(verdict(verification, config, design), soft_wrap=True)
+        warn_overlooked(ctx, directory, config, [design], [verification.unchanged])
     click.echo(
         f"\nNext, figures and a page that shows the champion moving:\n  {command(ctx, 'report', directory)}",
         err=True,

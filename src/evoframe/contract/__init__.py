@@ -15,11 +15,13 @@ from evoframe.contract.config import (
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
 from evoframe.contract.optional import (
+    SupportsDuration,
     SupportsExemptions,
     SupportsExport,
     SupportsGeometry,
     SupportsGraph,
     SupportsInputNames,
+    SupportsObjective,
     SupportsOutputNames,
     SupportsProvenance,
     SupportsPublished,
@@ -28,8 +30,10 @@ from evoframe.contract.optional import (
     SupportsSettings,
     SupportsUnit,
     SupportsVariants,
+    SupportsWindow,
     Variant,
     unit_of,
+    window_of,
 )
 from evoframe.contract.protocols import (
     Aggregator,
@@ -98,11 +102,13 @@ __all__ = [
     "Scores",
     "Simulator",
     "Source",
+    "SupportsDuration",
     "SupportsExemptions",
     "SupportsExport",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
+    "SupportsObjective",
     "SupportsOutputNames",
     "SupportsProvenance",
     "SupportsPublished",
@@ -111,10 +117,12 @@ __all__ = [
     "SupportsSettings",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWindow",
     "Turn",
     "Variant",
     "Workload",
     "blaming",
     "is_role",
     "unit_of",
+    "window_of",
 ]
