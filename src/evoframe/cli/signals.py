@@ -10,7 +10,6 @@ import contextlib
 import multiprocessing
 import os
 import signal
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
@@ -98,9 +97,9 @@ def ended_by_signal(last_words: str = "Interrupted") -> contextlib.AbstractConte
 @contextlib.contextmanager
 def _watched(last: int, on_first: Callable[[int], None], last_words: Callable[[], str]) -> Iterator[None]:
     """Watch signals that Python handles, and end the process soon after the one with the number *last*."""
-    receiver, sender = socket.socketpair()
-    sender.settimeout(0)  # as set_wakeup_fd requires
-    previous = signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
+    receiver, sender = os.pipe()
+    os.set_blocking(sender, False)  # noqa: FBT003 - as set_wakeup_fd requires
+    previous = signal.set_wakeup_fd(sender, warn_on_full_buffer=False)
     left = threading.Event()
     watch = threading.Thread(target=_watch, args=(receiver, left, last, on_first, last_words), daemon=True)
     watch.start()
@@ -109,20 +108,20 @@ def _watched(last: int, on_first: Callable[[int], None], last_words: Callable[[]
     finally:
         left.set()
         signal.set_wakeup_fd(previous)
-        sender.close()  # ends the thread
+        os.close(sender)  # ends the thread
         watch.join()
-        receiver.close()
+        os.close(receiver)
 
 
 def _watch(
-    receiver: socket.socket,
+    receiver: int,
     left: threading.Event,
     last: int,
     on_first: Callable[[int], None],
     last_words: Callable[[], str],
 ) -> None:
     seen = 0
-    while data := receiver.recv(1):
+    while data := os.read(receiver, 1):
         number = data[0]
         if number not in _SIGNALS:
             continue
