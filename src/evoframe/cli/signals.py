@@ -98,7 +98,7 @@ def ended_by_signal(last_words: str = "Interrupted") -> contextlib.AbstractConte
 def _watched(last: int, on_first: Callable[[int], None], last_words: Callable[[], str]) -> Iterator[None]:
     """Watch signals that Python handles, and end the process soon after the one with the number *last*."""
     receiver, sender = os.pipe()
-    os.set_blocking(sender, False)  # noqa: FBT003 - as set_wakeup_fd requires
+    os.set_blocking(sender, False)
     previous = signal.set_wakeup_fd(sender, warn_on_full_buffer=False)
     left = threading.Event()
     watch = threading.Thread(target=_watch, args=(receiver, left, last, on_first, last_words), daemon=True)
