@@ -450,7 +450,7 @@ IN_LOOP double limited(double wanted, double last, double smallest, double large
     const bool shrinks = (wanted < smallest) & (wanted < last);
     const bool grows = (wanted > largest) & (wanted > last);
     const double limit = wanted < smallest ? smallest : largest;
-    return shrinks | grows ? (clamp ? limit : last) : wanted;
+    return (shrinks | grows) ? (clamp ? limit : last) : wanted;
 }
 
 /* Add slow damping and weight to the force on a voxel. */

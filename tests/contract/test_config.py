@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import attrs
 import pytest
@@ -66,7 +66,7 @@ def test_an_option_added_later_counts_only_if_it_differs_from_its_default(toy_co
     config = toy_config()
 
     def grown(**options: float) -> RunConfig:
-        component = Grown(limit=config.simulator.component.limit, **options)
+        component = Grown(**attrs.asdict(cast("Any", config.simulator.component)), **options)
         return attrs.evolve(config, simulator=attrs.evolve(config.simulator, component=component))
 
     assert grown().deciding() == config.deciding()

@@ -14,7 +14,7 @@ import click
 
 from evoframe._version import __version__
 from evoframe.cli.context import common_options, modules_of, plugin_options, plugins_of
-from evoframe.cli.signals import exit_code
+from evoframe.cli.signals import ended_by_signal, exit_code
 from evoframe.errors import EvoframeError, PluginWarning, RunError
 from evoframe.messages import full_text
 
@@ -145,7 +145,8 @@ def main() -> None:
     """Run the program with the arguments of the process."""
     warnings.showwarning = _show_warning
     warnings.simplefilter("always", PluginWarning)
-    cli(prog_name="evoframe")
+    with ended_by_signal():
+        cli(prog_name="evoframe")
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:

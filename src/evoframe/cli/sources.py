@@ -160,7 +160,7 @@ def refuse_run_and_study(ctx: click.Context, source: str) -> None:
     """
     if source in preset_names():
         return
-    if is_file(Path(source) / CONFIG_FILE):
+    if exists(Path(source)) and is_file(Path(source) / CONFIG_FILE):
         todo = f"to resume it: {command(ctx, 'resume', source)}"
         raise ConfigurationError(f"is the directory of a run; {todo}", source=source)
     if source in study_names() or is_study(Path(source)) or describes_study(source):

@@ -57,7 +57,7 @@ def verify(
         InputError: The file or directory cannot be read, or has an unexpected content.
         RunError: The verification fails or cannot be written.
     """
-    overrides = layers_of({**settings, "executor.workers": workers})
+    overrides = layers_of(settings, {"executor.workers": workers})
     named = source if isinstance(source, Run) else Path(source)
     job = read_job(named, preset, overrides, plugins or discover(), options=options)
     verifications = verify_job(job)

@@ -61,7 +61,7 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
         RunError: The measurement failed.
     """
     paths = [source.directory if isinstance(source, Run) else Path(source) for source in sources]
-    overrides = layers_of({**settings, "executor.workers": workers})
+    overrides = layers_of(settings, {"executor.workers": workers})
     candidates = read_candidates(
         paths, preset, overrides, plugins or discover(), published=published, options=options
     )
