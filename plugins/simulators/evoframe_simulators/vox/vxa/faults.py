@@ -35,6 +35,14 @@ class Faults:
         """Add the path of a tag without which the file cannot be simulated."""
         self._add(_MISSING, place, problem)
 
+    def within(self, place: str) -> bool:
+        """Return whether there is a fault inside a section, given by its path."""
+        return any(at.startswith(f"{place}/") for some in self._found.values() for at, _ in some)
+
+    def __bool__(self) -> bool:
+        """Whether there are faults."""
+        return bool(self._found)
+
     def check(self) -> None:
         """Reject the file if there are faults.
 

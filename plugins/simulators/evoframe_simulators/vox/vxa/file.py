@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -127,7 +127,7 @@ class VxaFile:
         Raises:
             InputError: As for :meth:`toml`.
         """
-        self._check_values(_NOTHING)
+        self._check_values(())
         return self._checked(VoxSettings(**self._merged(_NOTHING)), _NOTHING)
 
     def _merged(self, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -145,9 +145,13 @@ class VxaFile:
             )
         return {**merged, "palette": tuple(PaletteMaterial(**each) for each in merged["palette"])}
 
-    def _check_values(self, given: Mapping[str, Any]) -> None:
-        """Report the values of the file that are out of range, and the end that it lacks."""
-        faults = Faults()
+    def collect_faults(self, given: Collection[str], faults: Faults) -> None:
+        """Add the values of the file that are out of range, and the end that it lacks.
+
+        Args:
+            given: Names of the options that override those of the file.
+            faults: Faults of the file.
+        """
         for field in attrs.fields(VoxSettings):
             if field.name in self.options and field.name not in given:
                 _check(field, self.options[field.name], _PLACES.get(field.name, field.name), faults)
@@ -158,10 +162,16 @@ class VxaFile:
                         f"VXC/Palette/Material {material['code']}/Mechanical/{_TAGS.get(field.name, 'Name')}"
                     )
                     _check(field, material[field.name], place, faults)
-        if self.complete and self.steps is None and "duration" not in {*self.options, *given}:
+        endless = self.steps is None and "duration" not in {*self.options, *given}
+        if self.complete and endless and not faults.within(_STOP):
             faults.missing(
                 _STOP, "the file does not say when its simulation ends; set --set simulator.duration=SECONDS"
             )
+
+    def _check_values(self, given: Collection[str]) -> None:
+        """Report the faults of the file."""
+        faults = Faults()
+        self.collect_faults(given, faults)
         faults.check()
 
     def _checked(self, settings: VoxSettings, given: Mapping[str, Any]) -> VoxSettings:

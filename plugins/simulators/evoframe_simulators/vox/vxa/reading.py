@@ -89,8 +89,7 @@ class _Reader:
                     root.get("Simulator"), root.get("Environment"), strains, self.rules.engine, self.faults
                 )
             )
-        self.faults.check()
-        return VxaFile(
+        contents = VxaFile(
             options,
             materials,
             material,
@@ -100,6 +99,10 @@ class _Reader:
             self.rules,
             tuple(notes_of(self.document, self.rules, options, reach)),
         )
+        if self.faults:  # the user should see all of them at once
+            contents.collect_faults(self.given, self.faults)
+            self.faults.check()
+        return contents
 
     def _compression(self, vxc: Section, structure: Section) -> str:
         """Return the encoding of the layers; reject unknown ones before anything is decoded."""
@@ -119,7 +122,7 @@ class _Reader:
         """Return the options of the simulation, and the number of steps if the file sets it."""
         simulator, environment = self.document.root.get("Simulator"), self.document.root.get("Environment")
         engine = self.rules.engine
-        stop, steps = read_stop(simulator, environment, engine, self.faults)
+        stop, steps = read_stop(simulator, environment, engine, self.faults, self.given)
         options = {
             "fixed": read_regions(environment, lattice, self.faults),
             **read_integration(simulator),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 from evoframe import InputError
@@ -49,11 +50,16 @@ def read_collisions(simulator: Section, engine: Engine, faults: Faults) -> dict[
 
 
 def read_stop(
-    simulator: Section, environment: Section, engine: Engine, faults: Faults
+    simulator: Section,
+    environment: Section,
+    engine: Engine,
+    faults: Faults,
+    given: Collection[str] = (),
 ) -> tuple[dict[str, Any], int | None]:
     """Return start and duration as options, and the number of steps if the file sets that instead.
 
-    The duration is missing if the file does not end by itself.
+    The duration is missing if the file does not end by itself. An end of another kind is a fault, unless the
+    options *given* by the user contain the duration.
 
     Raises:
         InputError: The number of steps is too large, or a value is not a number.
@@ -66,15 +72,16 @@ def read_stop(
             late = section.text("ActuationStartTime") or ""
             faults.unsupported(section.at("ActuationStartTime"), shorten(late), "later than InitCmTime")
     elif (formula := section.find("StopConditionFormula")) is not None:
-        return {"duration": _duration_of(formula, faults)}, None
+        return {} if "duration" in given else {"duration": _duration_of(formula, faults)}, None
     kind = section.whole("StopConditionType", 0, most=6)
     if kind == 0:
         return options, None
     if kind == 1:  # the engine rounds the number and makes one step more
         return options, _counted(section)
     if kind not in _DURATIONS:
-        why = "expected a number of steps (1), a time (2) or temperature periods (3)"
-        faults.unsupported(section.at("StopConditionType"), shorten(str(kind)), why)
+        if "duration" not in given:
+            why = "expected a number of steps (1), a time (2) or temperature periods (3)"
+            faults.unsupported(section.at("StopConditionType"), shorten(str(kind)), why)
         return options, None
     duration = section.number("StopConditionValue", 0.0, above=0.0)
     if kind == _PERIODS:

@@ -44,6 +44,14 @@ def test_several_faults_are_grouped_with_a_line_each_and_at_most_ten(kinds: list
     assert (lines[-1] == f"  ... and {len(kinds) - 10} more") == (len(kinds) > 10)
 
 
+def test_know_the_sections_that_have_some() -> None:
+    faults = Faults()
+    assert (bool(faults), faults.within("A")) == (False, False)
+    faults.missing("A/B/C", "why")
+    assert bool(faults)
+    assert [faults.within(place) for place in ("A", "A/B", "A/B/C", "B")] == [True, True, False, False]
+
+
 def test_a_reason_follows_the_value() -> None:
     faults = Faults()
     faults.unsupported("A", "'1'")

@@ -392,6 +392,15 @@ class TestErrors:
         named = ("Integrator", "PrimType", "MatModel", "ColSystem", "StopConditionType", "TorqueX")
         assert all(tag in str(caught.value) for tag in named)
 
+    def test_are_reported_with_values_out_of_range(self, vxa: Write) -> None:
+        path = vxa(PrimType=2, DtFrac=1.5, StopConditionType=6)
+        with pytest.raises(InputError, match="3 faults") as caught:
+            read_vxa(path)
+        assert "DtFrac" in caught.value.problem
+        with pytest.raises(InputError) as caught:
+            read_vxa(path, given=["duration", "time_step_fraction"])
+        assert "PrimType" in caught.value.key
+
     @pytest.mark.parametrize("compression", ["RAW_DATA", "GZIP", "zlib"])
     def test_contain_an_unknown_encoding_of_the_structure(self, vxa: Write, compression: str) -> None:
         path = vxa()

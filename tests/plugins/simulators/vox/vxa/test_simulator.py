@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -22,11 +23,11 @@ def section(name: str, text: str) -> Section:
 
 
 def stop(
-    text: str, environment: str = "", engine: Engine = Engine.FORK
+    text: str, environment: str = "", engine: Engine = Engine.FORK, given: Collection[str] = ()
 ) -> tuple[dict[str, Any], int | None, Faults]:
     faults = Faults()
     simulator = section("Simulator", f"<StopCondition>{text}</StopCondition>")
-    return *read_stop(simulator, section("Environment", environment), engine, faults), faults
+    return *read_stop(simulator, section("Environment", environment), engine, faults, given), faults
 
 
 def kind(number: int, value: float) -> str:
@@ -110,6 +111,7 @@ def test_ends_by_energy_are_not_simulated(number: int) -> None:
     with pytest.raises(InputError) as caught:
         stop(kind(number, 1))[2].check()
     assert caught.value.key == "Simulator/StopCondition/StopConditionType"
+    assert stop(kind(number, 1), given=["duration"]) == ({"start_time": 0.0}, None, Faults())
 
 
 @pytest.mark.parametrize(
@@ -156,3 +158,5 @@ def test_other_formulas_are_not_simulated(formula: str) -> None:
     with pytest.raises(InputError) as caught:
         faults.check()
     assert caught.value.key == "Simulator/StopCondition/StopConditionFormula"
+    given = stop(FORMULA.format(formula), engine=Engine.VOXCRAFT, given=["duration"])
+    assert given == ({}, None, Faults())
