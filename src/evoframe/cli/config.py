@@ -13,6 +13,7 @@ from evoframe.cli.context import (
     plugins_of,
     set_option,
 )
+from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, write_file
 from evoframe.config import commented, load_config, starter
 
@@ -41,7 +42,7 @@ Examples:
 def show(ctx: click.Context, source: str, overrides: tuple[str, ...], comments: bool) -> None:
     """Check a configuration and print it with every default."""
     resolved = load_config(source, overrides=overrides, plugins=plugins_of(ctx))
-    click.echo(commented(resolved) if comments else resolved.to_toml(), nl=False)
+    echo(commented(resolved) if comments else resolved.to_toml(), nl=False)
 
 
 @config.command(

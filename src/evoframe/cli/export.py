@@ -8,6 +8,7 @@ import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
 from evoframe.cli.sources import RUN_OR_FILE
+from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, write_file
 from evoframe.designs import export_job, read_job
 
@@ -59,4 +60,4 @@ def export(
     path = out or default
     write_file(path, exported.data, force=force)
     if path != STDOUT:
-        click.echo(path)
+        echo(path)

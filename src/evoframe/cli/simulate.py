@@ -20,6 +20,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
+from evoframe.cli.streams import echo, lend_descriptor
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
 from evoframe.designs import Job, naming, simulate_job, trace_of
@@ -81,7 +82,7 @@ def simulate(
         for label, score in zip(job.labels, scores, strict=True)
     ]
     if as_json:
-        click.echo(json.dumps(_document(bodies)))
+        echo(json.dumps(_document(bodies)))
     else:
         output().print(_table(bodies))
 
@@ -132,7 +133,7 @@ def _write_trace(path: Path, jobs: list[Job]) -> None:
     with naming(job.path):
         rows = list(trace_of(job.config.simulator.component, design))
     try:
-        with path.open("w", newline="", encoding="utf-8") as file:
+        with lend_descriptor(), path.open("w", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerows(rows)
     except OSError as error:
         raise InputError(f"cannot be written: {error.strerror}", source=path) from error

@@ -17,6 +17,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
+from evoframe.cli.streams import echo
 from evoframe.config import Layer
 from evoframe.designs import Job, keep_of_job, verdict, verify_job
 from evoframe.messages import quantity
@@ -58,7 +59,7 @@ def verify(
     found = [(job, verify_job(job)) for job in jobs]
     if as_json:
         labelled = [pair for job, made in found for pair in zip(job.labels, made, strict=True)]
-        click.echo(json.dumps([{"body": label, **each.to_json()} for label, each in labelled]))
+        echo(json.dumps([{"body": label, **each.to_json()} for label, each in labelled]))
     else:
         for job, verifications in found:
             _print(job, verifications)

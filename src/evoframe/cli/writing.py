@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
-
+from evoframe.cli.streams import echo, lend_descriptor
 from evoframe.errors import InputError, RunError
 from evoframe.files import write_atomically
 
@@ -14,6 +13,7 @@ __all__ = ["STDOUT", "write_file"]
 STDOUT = Path("-")
 
 
+@lend_descriptor()  # for a path such as /dev/stdout
 def write_file(path: Path, data: bytes, *, force: bool) -> None:
     """Write a file, or standard output for :data:`STDOUT`; overwrite different content only with *force*.
 
@@ -22,7 +22,7 @@ def write_file(path: Path, data: bytes, *, force: bool) -> None:
     """
     try:
         if path == STDOUT:
-            click.echo(data, nl=False)
+            echo(data, nl=False)
         elif path.exists() and not path.is_file():
             path.write_bytes(data)  # a device or a pipe; fails for a directory
         elif not path.exists() or path.read_bytes() != data:
