@@ -12,8 +12,10 @@ from hypothesis import given, strategies as st
 
 from evoframe import ConfigurationError, InputError
 from evoframe.files.reading import (
+    DEEPEST,
     is_directory,
     is_file,
+    is_too_deep,
     parsed_json,
     parsed_toml,
     read_text,
@@ -66,7 +68,7 @@ def test_json_is_parsed_to_the_original_value(value: Any) -> None:
     assert parsed_json(json.dumps(value)) == value
 
 
-@pytest.mark.parametrize("text", ["", "{", "[" * 100_000, "1" * 5000, "nope"])
+@pytest.mark.parametrize("text", ["", "{", "[" * 50, "1" * 5000, "nope"])
 def test_invalid_json_is_a_value_error(text: str) -> None:
     with pytest.raises(ValueError, match="JSON"):
         parsed_json(text)
@@ -76,7 +78,7 @@ def test_toml_is_parsed_to_tables() -> None:
     assert parsed_toml('[a]\nb = [1, 2.5]\nc.d = "x"', "here") == {"a": {"b": [1, 2.5], "c": {"d": "x"}}}
 
 
-@pytest.mark.parametrize("text", ["a", "a = ", "a = " + "1" * 5000, "a = " + "[" * 100_000])
+@pytest.mark.parametrize("text", ["a", "a = ", "a = " + "1" * 5000, "a = " + "[" * 50])
 @pytest.mark.parametrize("error", [InputError, ConfigurationError])
 def test_invalid_toml_is_an_error_of_the_given_type(text: str, error: type[InputError]) -> None:
     with pytest.raises(error, match="TOML") as caught:
@@ -141,3 +143,36 @@ class TestLinks:
         with pytest.raises(InputError, match="Not a directory") as caught:
             refuse_links(tmp_path / "file")
         assert caught.value.source == str(tmp_path / "file")
+
+
+def lists(depth: int) -> str:
+    return "[" * depth + "]" * depth
+
+
+class TestDepth:
+    @pytest.mark.parametrize("depth", [2, DEEPEST - 1, DEEPEST, DEEPEST + 1, 900, 100_000])
+    def test_is_limited_in_json(self, depth: int) -> None:
+        for text in (lists(depth), '{"a":' * depth + "0" + "}" * depth, f"[1, {lists(depth - 1)}, 2]"):
+            if depth <= DEEPEST:
+                parsed_json(text)
+            else:
+                with pytest.raises(ValueError, match=f"{DEEPEST} deep"):
+                    parsed_json(text)
+
+    @pytest.mark.parametrize("depth", [2, DEEPEST - 1, DEEPEST, DEEPEST + 1, 900, 100_000])
+    def test_is_limited_in_toml(self, depth: int) -> None:
+        dotted, header = ".".join(["'a'"] * depth), " . ".join(["a"] * (depth - 1))
+        inline = "{a=" * (depth - 1) + "1" + "}" * (depth - 1)
+        for text in (f"a = {lists(depth - 1)}", f"{dotted} = 1", f"[{header}]", f"a = {inline}"):
+            if depth <= DEEPEST:
+                parsed_toml(text, "here")
+            else:
+                with pytest.raises(InputError, match=f"{DEEPEST} deep") as caught:
+                    parsed_toml(text, "here")
+                assert caught.value.source == "here"
+
+    def test_of_a_document_that_contains_itself_is_not_finite(self) -> None:
+        cyclic: list[Any] = []
+        cyclic += [(cyclic,), cyclic, cyclic]
+        assert is_too_deep({"a": cyclic})
+        assert not is_too_deep("text")

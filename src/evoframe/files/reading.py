@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import stat
 import tomllib
 from pathlib import Path
@@ -11,10 +12,13 @@ from typing import Any
 from evoframe.errors import EvoframeError, InputError
 
 __all__ = [
+    "DEEPEST",
     "LARGEST_DOCUMENT",
+    "TOO_DEEP",
     "exists",
     "is_directory",
     "is_file",
+    "is_too_deep",
     "parsed_json",
     "parsed_toml",
     "read_text",
@@ -24,6 +28,18 @@ __all__ = [
 
 LARGEST_DOCUMENT = 64
 """Maximum size of a design or of a saved state, MiB; real ones are far smaller."""
+
+DEEPEST = 64
+"""Maximum number of lists and tables inside each other, in every document; evoframe's own have at most 8.
+
+Functions that recurse into a document need a few frames for each, of the thousand that Python has.
+"""
+
+TOO_DEEP = f"lists and tables are nested more than {DEEPEST} deep"
+"""The problem of a document that :func:`is_too_deep`."""
+
+_KEY = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{DEEPEST}}}")
 
 
 def read_text(path: Path, largest: int) -> str:
@@ -52,12 +68,17 @@ def parsed_json(text: str) -> Any:
     """Return the value of an untrusted JSON text.
 
     Raises:
-        ValueError: The text is not valid JSON.
+        ValueError: The text is not valid JSON, or is nested deeper than :data:`DEEPEST`.
     """
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
+        document = json.loads(text)
+    except ValueError as error:
         raise ValueError(f"not valid JSON: {error}") from error
+    except RecursionError as error:
+        raise ValueError(TOO_DEEP) from error
+    if is_too_deep(document):
+        raise ValueError(TOO_DEEP)
+    return document
 
 
 def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputError) -> dict[str, Any]:
@@ -69,12 +90,32 @@ def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputE
         error_type: Type of the error.
 
     Raises:
-        EvoframeError: The text is not valid TOML; of the given type.
+        EvoframeError: The text is not valid TOML, or is nested deeper than :data:`DEEPEST`; of the given
+            type.
     """
+    if _DEEP_KEY.search(text):  # tomllib takes quadratic time for a dotted key
+        raise error_type(TOO_DEEP, source=origin)
     try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
+        tables = tomllib.loads(text)
+    except ValueError as error:  # also for a number of thousands of digits
         raise error_type(f"not valid TOML: {error}", source=origin) from error
+    except RecursionError as error:
+        raise error_type(TOO_DEEP, source=origin) from error
+    if is_too_deep(tables):
+        raise error_type(TOO_DEEP, source=origin)
+    return tables
+
+
+def is_too_deep(document: Any) -> bool:
+    """Return whether lists and tables are nested deeper than :data:`DEEPEST`, or contain themselves."""
+    level = [document] if isinstance(document, dict | list | tuple) else []
+    for _ in range(DEEPEST):
+        if not level:
+            return False
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        items = (item for values in inner for item in values if isinstance(item, dict | list | tuple))
+        level = list({id(item): item for item in items}.values())  # one that is shared counts once
+    return bool(level)
 
 
 def is_directory(path: Path) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from evoframe.analysis.output.writing import write_files
 from evoframe.errors import InputError, RunError
-from evoframe.files import LARGEST_DOCUMENT, is_file, read_text
+from evoframe.files import LARGEST_DOCUMENT, is_file, parsed_json, read_text
 
 __all__ = ["LIST_FILE", "listed", "settle"]
 
@@ -28,10 +28,10 @@ def listed(directory: Path) -> dict[str, str]:
     if not is_file(path):
         return {}
     try:
-        files = json.loads(read_text(path, LARGEST_DOCUMENT))["files"].items()
+        files = parsed_json(read_text(path, LARGEST_DOCUMENT))["files"].items()
         if not all(re.fullmatch(r"[^/\0]+", name) and name not in {".", ".."} for name, _ in files):
             raise ValueError("a file outside of the directory")  # noqa: TRY301 - handled as the others
-    except (AttributeError, ValueError, TypeError, KeyError, RecursionError) as error:
+    except (AttributeError, ValueError, TypeError, KeyError) as error:
         raise InputError(
             "is not a list of a report's files; remove it, or choose another directory with --out",
             source=path,
