@@ -145,6 +145,55 @@ class TestLinks:
         assert caught.value.source == str(tmp_path / "file")
 
 
+WINDOWS = Path(__file__).parents[1] / "data" / "windows"
+
+OTHER_ENCODINGS = [
+    *[("utf-16", "UTF-16"), ("utf-16-le", "UTF-16"), ("utf-16-be", "UTF-16")],
+    *[("utf-32", "UTF-32"), ("utf-32-le", "UTF-32"), ("utf-32-be", "UTF-32")],
+]
+
+
+class TestTextOfWindows:
+    def test_begins_with_a_mark_that_is_not_part_of_the_text(self, tmp_path: Path) -> None:
+        path = tmp_path / "a.txt"
+        path.write_text("größer\r\n", encoding="utf-8-sig", newline="")
+        assert read_text(path, 1) == "größer\r\n"
+        assert parsed_toml(read_text(WINDOWS / "bom.toml", 1), "bom.toml") == {"extends": "quick"}
+
+    @pytest.mark.parametrize(("encoding", "name"), OTHER_ENCODINGS)
+    @pytest.mark.parametrize("mark", ["", "\ufeff"])
+    @pytest.mark.parametrize("text", ['extends = "quick"\r\n', '{"a": 1}', "a,b\n1,2\n", "#größer\n"])
+    def test_in_another_encoding_is_refused_with_its_name(
+        self, tmp_path: Path, encoding: str, name: str, mark: str, text: str
+    ) -> None:
+        path = tmp_path / "a.txt"
+        path.write_bytes((mark + text).encode(encoding))
+        with pytest.raises(InputError, match=f"{name}.*UTF-8") as caught:
+            read_text(path, 1)
+        assert caught.value.source == str(path)
+
+    @given(text=st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\ufeff\0")))
+    def test_in_utf_8_is_never_mistaken_for_another_encoding(
+        self, tmp_path_factory: pytest.TempPathFactory, text: str
+    ) -> None:
+        path = tmp_path_factory.getbasetemp() / "text.txt"
+        for encoding in ("utf-8", "utf-8-sig"):
+            path.write_bytes(text.encode(encoding))
+            assert read_text(path, 1) == text
+
+
+@given(json_values, st.sampled_from(["\n", "\r\n", "\r"]))
+def test_line_ends_in_json_do_not_matter(value: Any, end: str) -> None:
+    assert parsed_json(json.dumps(value, indent=1).replace("\n", end)) == value
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_line_ends_in_toml_do_not_matter(end: str) -> None:
+    text = '# comment\n[a]\nb = [\n1,\n2.5]\n\nc.d = """x\ny"""\n'
+    tables = {"a": {"b": [1, 2.5], "c": {"d": "x\ny"}}}
+    assert parsed_toml(text.replace("\n", end), "here") == tables
+
+
 def lists(depth: int) -> str:
     return "[" * depth + "]" * depth
 

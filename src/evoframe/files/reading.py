@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import re
 import stat
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +45,7 @@ _DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{D
 
 
 def read_text(path: Path, largest: int) -> str:
-    """Return the text of a file.
+    """Return the text of a file, without a byte order mark; line ends remain.
 
     Args:
         path: The file.
@@ -57,11 +59,36 @@ def read_text(path: Path, largest: int) -> str:
             content = file.read((largest << 20) + 1)
         if len(content) > largest << 20:
             raise InputError(f"exceeds {largest} MiB", source=path)
-        return content.decode("utf-8")
+        if encoding := _another_encoding(content):
+            raise InputError(f"is {encoding} text; save it as UTF-8", source=path)
+        return content.decode("utf-8-sig")  # Windows programs begin a file with a byte order mark
     except UnicodeDecodeError as error:
-        raise InputError("is not UTF-8 text", source=path) from error
+        raise InputError("is not UTF-8 text; save it as UTF-8", source=path) from error
     except (OSError, ValueError) as error:
         raise _unreadable(path, error) from error
+
+
+_MARKS = {  # the longer first: the shorter begins it
+    codecs.BOM_UTF32_LE: "UTF-32",
+    codecs.BOM_UTF32_BE: "UTF-32",
+    codecs.BOM_UTF16_LE: "UTF-16",
+    codecs.BOM_UTF16_BE: "UTF-16",
+}
+_ZEROS: Mapping[tuple[bool, ...], str] = {
+    (True, True, True, False): "UTF-32",
+    (False, True, True, True): "UTF-32",
+    (True, False, True, False): "UTF-16",
+    (False, True, False, True): "UTF-16",
+}
+"""Which of the first four bytes are zero in ASCII characters without a mark, as in section 3 of RFC 4627."""
+
+
+def _another_encoding(content: bytes) -> str | None:
+    """Return the name of an encoding other than UTF-8 that a text has for certain."""
+    for mark, name in _MARKS.items():
+        if content.startswith(mark):
+            return name
+    return _ZEROS.get(tuple(byte == 0 for byte in content[:4]))
 
 
 def parsed_json(text: str) -> Any:
@@ -95,6 +122,8 @@ def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputE
     """
     if _DEEP_KEY.search(text):  # tomllib takes quadratic time for a dotted key
         raise error_type(TOO_DEEP, source=origin)
+    if "\n" not in text:  # the line ends of old Macs, which TOML does not know
+        text = text.replace("\r", "\n")
     try:
         tables = tomllib.loads(text)
     except ValueError as error:  # also for a number of thousands of digits
