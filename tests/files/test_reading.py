@@ -225,3 +225,14 @@ class TestDepth:
         cyclic += [(cyclic,), cyclic, cyclic]
         assert is_too_deep({"a": cyclic})
         assert not is_too_deep("text")
+
+
+def test_half_a_character_is_refused() -> None:
+    half = "\ud800"
+    for text in ('{"a": "\\uD800"}', '["\\udfff"]'):
+        with pytest.raises(ValueError, match="JSON"):
+            parsed_json(text)
+    assert parsed_json('"\\ud83e\\udd16"') == "\N{ROBOT FACE}"
+    with pytest.raises(InputError, match="TOML") as caught:
+        parsed_toml(f"a = '{half}'", "--set a")
+    assert caught.value.source == "--set a"

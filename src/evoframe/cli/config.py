@@ -16,6 +16,7 @@ from evoframe.cli.context import (
 from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, write_file
 from evoframe.config import commented, load_config, starter
+from evoframe.errors import InputError
 
 __all__ = ["config"]
 
@@ -64,6 +65,10 @@ def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
     its value in the preset.
     """
     text = starter(load_config(preset, plugins=plugins_of(ctx)), preset)
-    write_file(path, text.encode(), force=force)
+    try:
+        data = text.encode()
+    except UnicodeEncodeError as error:
+        raise InputError("its name is not UTF-8 text, as TOML requires; rename it", source=preset) from error
+    write_file(path, data, force=force)
     if path != STDOUT:
         click.echo(f"To run it: {command(ctx, 'run', path)}", err=True)

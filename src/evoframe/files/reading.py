@@ -17,6 +17,7 @@ __all__ = [
     "DEEPEST",
     "LARGEST_DOCUMENT",
     "TOO_DEEP",
+    "encodable",
     "exists",
     "is_directory",
     "is_file",
@@ -68,6 +69,8 @@ def read_text(path: Path, largest: int) -> str:
         raise _unreadable(path, error) from error
 
 
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
+
 _MARKS = {  # the longer first: the shorter begins it
     codecs.BOM_UTF32_LE: "UTF-32",
     codecs.BOM_UTF32_BE: "UTF-32",
@@ -99,6 +102,8 @@ def parsed_json(text: str) -> Any:
     """
     try:
         document = json.loads(text)
+        if _SURROGATE.search(text):  # half a character, which no file that evoframe writes can contain
+            json.dumps(document, ensure_ascii=False).encode()
     except ValueError as error:
         raise ValueError(f"not valid JSON: {error}") from error
     except RecursionError as error:
@@ -125,6 +130,7 @@ def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputE
     if "\n" not in text:  # the line ends of old Macs, which TOML does not know
         text = text.replace("\r", "\n")
     try:
+        text.encode()  # fails for a name of a file that is not UTF-8, given as a setting
         tables = tomllib.loads(text)
     except ValueError as error:  # also for a number of thousands of digits
         raise error_type(f"not valid TOML: {error}", source=origin) from error
@@ -195,7 +201,12 @@ def _unreadable(path: Path, error: OSError | ValueError) -> InputError:
 
 def shown_name(path: Path) -> str:
     """Return the name of a directory for a title; characters that UTF-8 cannot encode become ``?``."""
-    return path.resolve().name.encode("utf-8", "replace").decode()
+    return encodable(path.resolve().name)
+
+
+def encodable(text: str) -> str:
+    """Return a text that may contain the name of a file; characters that UTF-8 cannot encode become ``?``."""
+    return text.encode("utf-8", "replace").decode()
 
 
 def refuse_links(directory: Path) -> None:
