@@ -7,7 +7,6 @@ is not installed, as in a program started from a notebook.
 from __future__ import annotations
 
 import contextlib
-import importlib
 import io
 import os
 import sys
@@ -32,7 +31,7 @@ def _load() -> None:
         return
     backend = os.environ.pop(_BACKEND, None)
     try:
-        matplotlib = importlib.import_module("matplotlib")
+        import matplotlib  # noqa: ICN001, PLC0415
     except (OSError, ValueError) as error:
         raise InputError(f"matplotlib cannot read its settings: {error}", source="matplotlibrc") from error
     finally:
@@ -74,6 +73,9 @@ def default_style(**settings: Any) -> Iterator[None]:
         _in_use.reset(token)
 
 
+_OF_FORMATS = ("pdf.", "pgf.", "ps.", "svg.")
+
+
 class Figure(figure.Figure):
     """A figure in matplotlib's default style, which notebooks display without pyplot."""
 
@@ -82,8 +84,11 @@ class Figure(figure.Figure):
             super().__init__(*args, **kwargs)
 
     def draw(self, renderer: Any) -> None:
-        """Draw the figure, including the parts that matplotlib adds only now, in the default style."""
-        with default_style():
+        """Draw the figure, including the parts that matplotlib adds only now, in the default style.
+
+        Settings of file formats, such as ``pdf.fonttype``, remain those of the caller.
+        """
+        with default_style(**{key: mpl.rcParams[key] for key in mpl.rcParams if key.startswith(_OF_FORMATS)}):
             super().draw(renderer)
 
     def _repr_png_(self) -> bytes:
