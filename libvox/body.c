@@ -397,6 +397,7 @@ void vox_body_rest(struct body *body, const double *phase_cycles)
     }
     for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
     body->time = body->top_speed = body->farthest = 0.0;
+    if (body->model->settings.fluid_drag > 0.0) vox_fluid_rest(body);
     if (body->model->settings.self_collision) vox_contacts_rest(body);
 }
 

@@ -19,10 +19,6 @@
 /* For the actuation: the engine's value, in single precision (section 4). */
 #define TWO_PI 6.283185005187988
 
-/* Limits of a voxel's size (section 4), in lattice edges. */
-#define SMALLEST_SCALE 0.1
-#define LARGEST_SCALE 3.0
-
 /* Limits between a bond's two frames (section 5), with hysteresis: a bond leaves the small frame at
  * a larger deformation than it returns to it. */
 #define SMALL_COSINE 0.9999625024343469 /* cos(0.01732 / 2) */
@@ -317,6 +313,12 @@ struct facet {
     int32_t corners[4]; /* counter-clockwise, seen from outside */
 };
 
+/* Reach of a voxel from its center to its faces, m: toward the lower and the upper neighbor along
+ * each axis. */
+struct reach {
+    double lower[3], upper[3];
+};
+
 /* The outer surface of a body; adjacent voxels share corners. */
 struct surface {
     int64_t n_corners, n_facets;
@@ -325,6 +327,7 @@ struct surface {
     double *share;       /* [n_corners] 1 / number of voxels that share the corner */
     struct vec *corners; /* [n_corners] m */
     struct facet *facets;
+    struct reach *reach; /* [slots] */
 };
 
 struct body {
@@ -424,17 +427,31 @@ struct tension {
 };
 struct tension vox_bonds_tension(const struct body *body);
 
+/* Return the stretch of a bond beyond its rest length, m, in its current frame. */
+double vox_bond_stretch(const struct body *body, enum axis axis, int64_t lower);
+
 /* motion.c */
 
 /* State of the actuation at a time (section 4): a voxel's size is edge * (rest + gain * amplitude *
  * sin(...)). */
 struct actuation {
-    double edge;   /* m */
-    double rest;   /* scale of a voxel without amplitude */
-    double gain;   /* fraction of the amplitude; 0 before the start */
-    double cycles; /* excluding the phase */
+    double edge;              /* m */
+    double rest;              /* scale of a voxel without amplitude */
+    double gain;              /* fraction of the amplitude; 0 before the start */
+    double cycles;            /* excluding the phase */
+    double smallest, largest; /* m, limits of a size */
+    bool clamp;               /* whether a size beyond a limit becomes the limit */
 };
 struct actuation vox_actuation_at(const vox_model *model, double time);
+
+/* Return the size that follows the size `last`: `wanted`, unless it is beyond a limit. */
+IN_LOOP double limited(double wanted, double last, double smallest, double largest, bool clamp)
+{
+    const bool shrinks = (wanted < smallest) & (wanted < last);
+    const bool grows = (wanted > largest) & (wanted > last);
+    const double limit = wanted < smallest ? smallest : largest;
+    return (shrinks | grows) ? (clamp ? limit : last) : wanted;
+}
 
 /* Add slow damping and weight to the force on a voxel. */
 void vox_voxel_load(struct body *body, int64_t slot);
@@ -532,10 +549,16 @@ void vox_surface_destroy(struct surface *surface);
 
 /* fluid.c */
 
+/* Reset the reach of the voxels to that of an undeformed body. */
+void vox_fluid_rest(struct body *body);
+
 /* Add the drag of the fluid to the voxels at the surface. */
 void vox_fluid_apply(struct body *body);
 
 /* floor.c */
+
+/* Return the depth of a voxel below the plane of the floor, m; negative above it. */
+double vox_floor_depth(const struct body *body, int64_t slot);
 
 /* Add the normal force and friction of the floor to the force on a voxel, which must include all
  * other forces; a sticking voxel loses its lateral momentum. */

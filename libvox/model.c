@@ -118,7 +118,7 @@ static double largest_size(const vox_model *model)
     for (int32_t i = 0; i < model->n_substances; i++)
         amplitude = fmax(amplitude, fabs(model->substances[i].strain_amplitude));
     return model->settings.voxel_size *
-           fmin(LARGEST_SCALE, fmax(1.0, model->rest_scale) + amplitude);
+           fmax(1.0, fmin(model->settings.largest_size, fmax(1.0, model->rest_scale) + amplitude));
 }
 
 static void derive_constants(vox_model *model, const struct vox_material *palette)

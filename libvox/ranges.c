@@ -18,8 +18,6 @@ struct row {
     ROW(status, field, low, 1, high, 1, "between " #low " and " #high unit)
 #define ABOVE(status, field, low, high, unit) \
     ROW(status, field, low, 0, high, 1, "above " #low " and at most " #high unit)
-#define BELOW(status, field, low, high) \
-    ROW(status, field, low, 1, high, 0, "at least " #low " and below " #high)
 #define AT_LEAST(status, field, low) ROW(status, field, low, 1, INFINITY, 0, "at least " #low)
 #define NOT_NEGATIVE(status, field) ROW(status, field, 0, 1, INFINITY, 0, "finite and not negative")
 #define FINITE(status, field) ROW(status, field, -INFINITY, 0, INFINITY, 0, "finite")
@@ -35,15 +33,18 @@ static const struct row settings[] = {
     BETWEEN(VOX_BAD_PERIOD, period, 1e-9, 1e9, " s"),
     BETWEEN(VOX_BAD_START_TIME, start_time, 0, 1e9, " s"),
     BETWEEN(VOX_BAD_RAMP, ramp, 0, 1e9, " s"),
+    BETWEEN(VOX_BAD_SMALLEST_SIZE, smallest_size, 1e-3, 1, ""),
+    BETWEEN(VOX_BAD_LARGEST_SIZE, largest_size, 1, 10, ""),
     FINITE(VOX_BAD_GRAVITY, gravity),
     BETWEEN(VOX_BAD_FLOOR_SLOPE, floor_slope, -89, 89, " degrees"),
+    BETWEEN(VOX_BAD_FALLING_CODE, falling_code, 0, 255, ""),
     NOT_NEGATIVE(VOX_BAD_FLUID_DRAG, fluid_drag),
     NOT_NEGATIVE(VOX_BAD_BOND_DAMPING, bond_damping),
     NOT_NEGATIVE(VOX_BAD_SLOW_DAMPING, slow_damping),
     NOT_NEGATIVE(VOX_BAD_FLOOR_DAMPING, floor_damping),
     NOT_NEGATIVE(VOX_BAD_CONTACT_DAMPING, contact_damping),
     BETWEEN(VOX_BAD_COLLISION_ENVELOPE, collision_envelope, 1, 2, ""),
-    BETWEEN(VOX_BAD_COLLISION_HORIZON, collision_horizon, 1, 4, ""),
+    BETWEEN(VOX_BAD_COLLISION_HORIZON, collision_horizon, 1, 10, ""),
     BETWEEN(VOX_BAD_COLLISION_LIST_FACTOR, collision_list_factor, 1, 2, ""),
     ABOVE(VOX_BAD_LARGEST_STRAIN, largest_strain, 0, 1e9, ""),
     ABOVE(VOX_BAD_LARGEST_DISTANCE, largest_distance, 0, 1e9, ""),
@@ -53,7 +54,7 @@ static const struct row settings[] = {
 #define OWNER struct vox_material
 static const struct row properties[] = {
     BETWEEN(VOX_BAD_YOUNGS_MODULUS, youngs_modulus, 1e-6, 1e18, " Pa"),
-    BELOW(VOX_BAD_POISSON_RATIO, poisson_ratio, 0, 0.5),
+    BETWEEN(VOX_BAD_POISSON_RATIO, poisson_ratio, 0, 0.5, ""),
     BETWEEN(VOX_BAD_DENSITY, density, 1e-6, 1e18, " kg/m3"),
     FINITE(VOX_BAD_EXPANSION, expansion),
     NOT_NEGATIVE(VOX_BAD_STATIC_FRICTION, static_friction),

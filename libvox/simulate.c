@@ -81,10 +81,20 @@ static bool advance(struct body *body, bool first_step, bool needed)
     return model->kernel->voxels_advance(body);
 }
 
+/* Return whether a voxel whose contact ends the motion is below the plane of the floor. */
+static bool has_fallen(const struct body *body, const uint8_t *material)
+{
+    const int64_t code = body->model->settings.falling_code;
+    for (int64_t i = 0; code != 0 && i < body->census.n_voxels; i++)
+        if (material[body->cells[i]] == code && vox_floor_depth(body, body->slots[i]) > 0.0)
+            return true;
+    return false;
+}
+
 /* Simulate a body to the end and write its samples from `row` on. Return 0 or the step at which it
  * diverged. The last step is skipped if no sample follows it and it cannot diverge. */
-static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_steps,
-                   const struct vox_tracks *tracks, int64_t row)
+static int64_t run(struct body *body, const uint8_t *material, int64_t n_samples,
+                   const int64_t *sample_steps, const struct vox_tracks *tracks, int64_t row)
 {
     const int64_t end = row + n_samples, last = body->census.steps - 1;
     for (int64_t step = 0;; step++) {
@@ -93,6 +103,10 @@ static int64_t run(struct body *body, int64_t n_samples, const int64_t *sample_s
             sample_steps++;
         }
         if (step == body->census.steps) return 0;
+        if (has_fallen(body, material)) {
+            while (row < end) vox_sample_write(body, tracks, row++);
+            return 0;
+        }
         const bool needed = step < last || row < end || body->model->settings.whole_body;
         if (advance(body, step == 0, needed)) continue;
         vox_sample_write_nothing(body->model, tracks, row, end);
@@ -147,8 +161,8 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
             status = set_body(body, model, material + i * model->cells);
         if (status != VOX_OK) break;
         vox_body_rest(body, phase_cycles + i * model->cells);
-        diverged_step[i] =
-            run(body, n_samples, own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
+        diverged_step[i] = run(body, material + i * model->cells, n_samples,
+                               own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
     }
     vox_body_return(model, body);
     if (status == VOX_OK) *culprit = -1;

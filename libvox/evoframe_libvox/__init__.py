@@ -123,7 +123,7 @@ class Material:
 
     Attributes:
         youngs_modulus: Young's modulus, Pa; 1e-6 to 1e18.
-        poisson_ratio: Poisson's ratio, at least 0 and below 0.5; it affects only the twist of bonds.
+        poisson_ratio: Poisson's ratio, 0 to 0.5; it affects only the twist of bonds.
         density: Density, kg/m3; 1e-6 to 1e18.
         expansion: Linear thermal expansion per degree; 0 for passive materials, negative for materials that
             contract when others expand.
@@ -151,11 +151,20 @@ class Settings:
         period: Period of the actuation, s.
         start_time: Start of the actuation, s; its phase still runs from time 0, so that sizes may jump.
         ramp: Time over which the actuation grows linearly to its full amplitude, s.
+        smallest_size: Smallest size of a voxel, in lattice edges; 1e-3 to 1.
+        largest_size: Largest size of a voxel, in lattice edges; 1 to 10.
+        size_clamp: Whether a size beyond a limit becomes the limit; in the original engine it keeps its last
+            value.
         gravity: Acceleration along z, m/s2; negative is down.
         floor: Whether to add a floor: the plane z = x tan(floor_slope). Its normal force is always vertical.
         floor_slope: Slope of the floor, degrees; -89 to 89.
+        falling_code: The motion of a body ends when a voxel of this material code is below the plane of the
+            floor, even if there is no floor; further samples repeat its state. 0: none.
         fluid_drag: Half the density of the surrounding fluid times the drag coefficient, kg/m3. The drag on a
-            facet of the outer surface is this times its area and the square of its normal speed.
+            facet of the surface is this times its area and the square of its normal speed.
+        fluid_by_size: Whether a voxel reaches half its size, and the fluid acts only on faces that are
+            connected to the outside. In the original engine, a voxel reaches half an edge plus the strain of
+            the bond on that side in the previous step, and the fluid acts on every face without a neighbor.
         time_step_fraction: Time step as a fraction of the largest stable one; above 0, at most 1.
         substeps: Number of steps in each such time step; the number of steps is a multiple of it.
         bond_damping: Damping of bonds, as a fraction of critical.
@@ -171,7 +180,7 @@ class Settings:
             start when voxels touch.
         collision_envelope: Distance at which repulsion starts, in mean voxel sizes: 1.5 in the original
             engine, 1 for touching voxels; 1 to 2.
-        collision_horizon: Reach of the list of contact candidates, in voxel sizes; 1 to 4. The list is
+        collision_horizon: Reach of the list of contact candidates, in voxel sizes; 1 to 10. The list is
             rebuilt when the fastest voxel may have moved by more than ``(horizon - 1) / 2`` lattice edges.
         collision_list_factor: The list excludes voxels within ``floor(factor * horizon)`` bonds of each
             other, and the original engine's list those beyond ``factor * horizon`` lattice edges; 1 to 2.
@@ -187,10 +196,15 @@ class Settings:
     period: float
     start_time: float = 0.0
     ramp: float = 0.0
+    smallest_size: float = 0.1
+    largest_size: float = 3.0
+    size_clamp: bool = False
     gravity: float = 0.0
     floor: bool = False
     floor_slope: float = 0.0
+    falling_code: int = 0
     fluid_drag: float = 0.0
+    fluid_by_size: bool = False
     time_step_fraction: float = 0.9
     substeps: int = 1
     bond_damping: float = 1.0

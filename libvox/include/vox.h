@@ -20,7 +20,7 @@
 
 /* Version of this library. The second number increases with every change of the interface or of a
  * bit of the results, the third with all other changes. */
-#define VOX_VERSION "0.1.0"
+#define VOX_VERSION "0.2.0"
 
 /* Maximum sizes of a model. */
 enum {
@@ -45,8 +45,11 @@ enum vox_status {
     VOX_BAD_PERIOD,
     VOX_BAD_START_TIME,
     VOX_BAD_RAMP,
+    VOX_BAD_SMALLEST_SIZE,
+    VOX_BAD_LARGEST_SIZE,
     VOX_BAD_GRAVITY,
     VOX_BAD_FLOOR_SLOPE,
+    VOX_BAD_FALLING_CODE,
     VOX_BAD_FLUID_DRAG,
     VOX_BAD_BOND_DAMPING,
     VOX_BAD_SLOW_DAMPING,
@@ -104,11 +107,20 @@ struct vox_settings {
     double period;                /* s; 1e-9 .. 1e9 */
     double start_time;            /* s; 0 .. 1e9; the phase still runs from time 0 */
     double ramp;                  /* s, from the start to full amplitude; 0 .. 1e9 */
+    double smallest_size;         /* of a voxel, in lattice edges; 1e-3 .. 1 */
+    double largest_size;          /* of a voxel, in lattice edges; 1 .. 10 */
+    int32_t size_clamp;           /* 0: a size that would pass a limit keeps its last value; else it
+                                     becomes the limit */
     /* environment */
-    double gravity;     /* acceleration along z, m/s2; negative is down */
-    int32_t floor;      /* 0: none; else the plane z = x tan(floor_slope) */
-    double floor_slope; /* angular degrees; -89 .. 89; the normal force stays vertical */
-    double fluid_drag;  /* kg/m3, half the fluid's density times drag coefficient; >= 0 */
+    double gravity;        /* acceleration along z, m/s2; negative is down */
+    int32_t floor;         /* 0: none; else the plane z = x tan(floor_slope) */
+    double floor_slope;    /* angular degrees; -89 .. 89; the normal force stays vertical */
+    int64_t falling_code;  /* the motion of a body ends when a voxel of this material code touches
+                              the plane of the floor; 0 .. 255, 0: none */
+    double fluid_drag;     /* kg/m3, half the fluid's density times drag coefficient; >= 0 */
+    int32_t fluid_by_size; /* surface on which the fluid acts. 0: that of the original engine, a
+                              voxel reaches half an edge plus the strain of the bond on each side;
+                              else: a voxel reaches half its size */
     /* damping, each as a fraction of critical */
     double bond_damping;    /* >= 0 */
     double slow_damping;    /* of all motion relative to the ground; >= 0 */
@@ -120,7 +132,7 @@ struct vox_settings {
     int32_t complete_contacts;    /* 0: the original engine's list of contact candidates, which may
                                      be late; else a complete list */
     double collision_envelope;    /* distance of contact, in mean sizes; 1 .. 2 */
-    double collision_horizon;     /* reach of the candidate list, in voxel sizes; 1 .. 4. It is
+    double collision_horizon;     /* reach of the candidate list, in voxel sizes; 1 .. 10. It is
                                      rebuilt when the fastest voxel may have moved by
                                      (horizon - 1) / 2 lattice edges */
     double collision_list_factor; /* the list excludes voxels within floor(factor * horizon) bonds
@@ -141,7 +153,7 @@ struct vox_settings {
 struct vox_material {
     int32_t used;            /* 0: invalid code, the other fields are ignored */
     double youngs_modulus;   /* Pa; 1e-6 .. 1e18 */
-    double poisson_ratio;    /* 0 <= . < 0.5 */
+    double poisson_ratio;    /* 0 .. 0.5 */
     double density;          /* kg/m3; 1e-6 .. 1e18 */
     double expansion;        /* linear, per degree; negative: contracts when hot */
     double static_friction;  /* >= 0 */
@@ -194,6 +206,8 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
  *               gaps. Such a body stops; the others are not affected.
  *
  * A call that fails leaves all buffers unchanged, unless memory runs out in the middle of a batch.
+ *
+ * From the step at which the motion of a body ends (falling_code), samples repeat its state.
  *
  * The results of a body do not depend on the other bodies in the batch, or on the requested samples
  * and tracks.

@@ -223,6 +223,13 @@ static double spring_energy(const struct coupling *c, struct deformation d)
     return stretched + twisted + sheared + c->bend * bent;
 }
 
+double vox_bond_stretch(const struct body *body, enum axis axis, int64_t lower)
+{
+    const struct bonds *bonds = &body->bonds[axis];
+    const bool small = bonds->small[lower] != 0.0;
+    return pose_of(&body->voxels, axis, lower, lower + bonds->step, small).deformation.stretch.x;
+}
+
 static void add_tension(const struct body *body, enum axis axis, struct tension *tension)
 {
     const struct bonds *bonds = &body->bonds[axis];

@@ -7,8 +7,12 @@ static const double SETTLING = 0.5;
 struct actuation vox_actuation_at(const vox_model *model, double time)
 {
     const struct vox_settings *s = &model->settings;
-    struct actuation a = {
-        .edge = s->voxel_size, .rest = model->rest_scale, .cycles = time / s->period};
+    struct actuation a = {.edge = s->voxel_size,
+                          .rest = model->rest_scale,
+                          .cycles = time / s->period,
+                          .smallest = s->smallest_size * s->voxel_size,
+                          .largest = s->largest_size * s->voxel_size,
+                          .clamp = s->size_clamp};
     if (time < s->start_time) {
         a.rest = 1.0 + fmin(1.0, time / (SETTLING * s->start_time)) * (model->rest_scale - 1.0);
         return a;
@@ -18,15 +22,11 @@ struct actuation vox_actuation_at(const vox_model *model, double time)
     return a;
 }
 
-/* Return the new size, or the previous one if the new size is beyond the limits. */
 static double size_of(const struct actuation *a, double amplitude, double phase, double last)
 {
-    if (a->gain == 0.0 || amplitude == 0.0) return a->edge * a->rest;
-    const double size =
-        a->edge * (a->rest + a->gain * amplitude * sin(TWO_PI * (a->cycles + phase)));
-    if (size < SMALLEST_SCALE * a->edge && size < last) return last;
-    if (size > LARGEST_SCALE * a->edge && size > last) return last;
-    return size;
+    const bool acts = a->gain != 0.0 && amplitude != 0.0;
+    const double strain = acts ? a->gain * amplitude * sin(TWO_PI * (a->cycles + phase)) : 0.0;
+    return limited(a->edge * (a->rest + strain), last, a->smallest, a->largest, a->clamp);
 }
 
 static struct quat turned(struct quat q, struct vec spin_rate, double dt)

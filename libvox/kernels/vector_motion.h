@@ -104,20 +104,21 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
                       double swing, double sway)
 {
     const double edge = actuation->edge, rest = actuation->rest, gain = actuation->gain;
+    const double smallest = actuation->smallest, largest = actuation->largest;
+    const bool clamp = actuation->clamp;
     const double *restrict amplitude = v->amplitude + base;
     const double *restrict phase_sine = v->phase_sine + base;
     const double *restrict phase_cosine = v->phase_cosine + base;
     double *restrict size = v->size + base;
     if (gain == 0.0) {
-        for (int64_t i = 0; i < TILE; i++) size[i] = edge * rest;
+        for (int64_t i = 0; i < TILE; i++)
+            size[i] = limited(edge * rest, size[i], smallest, largest, clamp);
         return;
     }
     for (int64_t i = 0; i < TILE; i++) {
         const double next =
             edge * (rest + gain * amplitude[i] * (swing * phase_cosine[i] + sway * phase_sine[i]));
-        const bool shrinks = (next < SMALLEST_SCALE * edge) & (next < size[i]);
-        const bool grows = (next > LARGEST_SCALE * edge) & (next > size[i]);
-        size[i] = choose(shrinks | grows, size[i], next);
+        size[i] = limited(next, size[i], smallest, largest, clamp);
     }
 }
 

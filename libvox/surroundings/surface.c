@@ -1,5 +1,6 @@
-/* The outer surface of a body in a fluid (section 7): the faces that are connected to the outside,
- * and the corners that are shared by voxels with common faces. */
+/* The surface of a body in a fluid (section 7). In the original engine, it has all faces without a
+ * neighbor, and all voxels around a lattice point share a corner there. The other surface has the
+ * faces that are connected to the outside, and only voxels with common faces share corners. */
 #include <stdlib.h>
 
 #include "internal.h"
@@ -34,7 +35,7 @@ static int64_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z
     return body->occupied[slot] ? slot : -1;
 }
 
-/* Create a corner for each group of connected voxels around the lattice point (x, y, z). */
+/* Create a corner for each group of voxels that share it around the lattice point (x, y, z). */
 static void meet_at(struct body *body, int64_t x, int64_t y, int64_t z)
 {
     struct surface *surface = &body->surface;
@@ -45,7 +46,8 @@ static void meet_at(struct body *body, int64_t x, int64_t y, int64_t z)
         if (voxels[i] >= 0) left |= 1u << i;
     }
     while (left) {
-        const unsigned group = joined_to(left & (~left + 1u), left);
+        const unsigned group =
+            body->model->settings.fluid_by_size ? joined_to(left & (~left + 1u), left) : left;
         int n = 0;
         for (int i = 0; i < 8; i++) {
             if (!(group >> i & 1u)) continue;
@@ -80,8 +82,9 @@ static bool at_border(const struct body *body, int64_t slot)
 static void flood(const struct body *body, bool *outside, int32_t *queue)
 {
     int64_t n = 0;
+    const bool everywhere = !body->model->settings.fluid_by_size; /* also in sealed cavities */
     for (int64_t slot = 0; slot < body->n_slots; slot++) {
-        outside[slot] = !body->occupied[slot] && at_border(body, slot);
+        outside[slot] = !body->occupied[slot] && (everywhere || at_border(body, slot));
         if (outside[slot]) queue[n++] = (int32_t)slot;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -164,7 +167,9 @@ enum vox_status vox_surface_shape(struct body *body)
     surface->share = malloc(8 * n * sizeof *surface->share);
     surface->corners = malloc(8 * n * sizeof *surface->corners);
     surface->facets = malloc(6 * n * sizeof *surface->facets);
-    if (!surface->corners_of || !surface->share || !surface->corners || !surface->facets)
+    surface->reach = malloc((size_t)body->n_slots * sizeof *surface->reach);
+    if (!surface->corners_of || !surface->share || !surface->corners || !surface->facets ||
+        !surface->reach)
         return VOX_NO_MEMORY;
     join_corners(body);
     return place_facets(body);
@@ -176,4 +181,5 @@ void vox_surface_destroy(struct surface *surface)
     free(surface->share);
     free(surface->corners);
     free(surface->facets);
+    free(surface->reach);
 }

@@ -6,6 +6,7 @@ from .analysis.statistics import Correction as Correction
 from .config.layers import Layer as Layer
 from .config.resolve import load_config as load_config
 from .contract.config import (
+    ADDED_LATER as ADDED_LATER,
     Chosen as Chosen,
     PopulationConfig as PopulationConfig,
     RunConfig as RunConfig,
@@ -19,11 +20,13 @@ from .contract.drawings import (
     NetworkLink as NetworkLink,
 )
 from .contract.optional import (
+    SupportsDuration as SupportsDuration,
     SupportsExemptions as SupportsExemptions,
     SupportsExport as SupportsExport,
     SupportsGeometry as SupportsGeometry,
     SupportsGraph as SupportsGraph,
     SupportsInputNames as SupportsInputNames,
+    SupportsObjective as SupportsObjective,
     SupportsOutputNames as SupportsOutputNames,
     SupportsProvenance as SupportsProvenance,
     SupportsPublished as SupportsPublished,
@@ -32,6 +35,7 @@ from .contract.optional import (
     SupportsSettings as SupportsSettings,
     SupportsUnit as SupportsUnit,
     SupportsVariants as SupportsVariants,
+    SupportsWindow as SupportsWindow,
     Variant as Variant,
 )
 from .contract.protocols import (

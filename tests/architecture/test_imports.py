@@ -112,7 +112,7 @@ UNUSUAL: Mapping[str, Unusual] = {
     ),
     "multiprocessing": Unusual(
         "pickles objects between processes of one program, never from a file or a network",
-        {"src/evoframe/study/pool.py", "src/evoframe/workers/processes.py"},
+        {"src/evoframe/cli/signals.py", "src/evoframe/study/pool.py", "src/evoframe/workers/processes.py"},
     ),
     "multiprocessing.reduction": Unusual(
         "pickles the messages between a run and its workers, as multiprocessing does",

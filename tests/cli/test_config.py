@@ -58,3 +58,14 @@ def test_config_new_refuses_to_extend_a_file_that_toml_cannot_name(
     assert refused.returncode == 2
     assert refused.stderr.startswith("Error: b\\udcff.toml: ")
     assert not (tmp_path / "my.toml").exists()
+
+
+def test_config_new_never_overwrites_the_preset_that_it_reads(evoframe: Evoframe, tmp_path: Path) -> None:
+    text = "[run]\nseed = 2\n"
+    (tmp_path / "base.toml").write_text(text)
+    (tmp_path / "my.toml").write_text('extends = "base.toml"\n')
+    for name in ("my.toml", "base.toml"):
+        refused = evoframe("config", "new", name, "--preset", "my.toml", "--force")
+        assert refused.returncode == 2
+        assert refused.stderr.startswith(f"Error: {name}: is an input")
+    assert (tmp_path / "base.toml").read_text() == text

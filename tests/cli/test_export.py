@@ -105,6 +105,29 @@ class TestFile:
         assert exported.stdout == "one.txt\n"
         assert (tmp_path / "one.txt").read_text() == "{'a': 2.0}\n"
 
+    def test_is_not_overwritten_by_itself(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        path = tmp_path / "one.toy"
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        path.write_text("# mine\ndesigns = [{ a = 2.0 }]\nsettings = { gain = 2.0 }\n")
+        before = path.read_bytes()
+        command = ["export", *TOYS, "one.toy", "--to", "toy", "--preset", "toy.toml", "--force"]
+        command += ["--set", "simulator=toy-varied"]
+        for out in ([], ["--out", "./one.toy"], ["--out", "toy.toml"]):
+            refused = evoframe(*command, *out)
+            assert refused.returncode == 2
+            assert "is an input" in refused.stderr
+        assert path.read_bytes() == before
+        assert (tmp_path / "toy.toml").read_text() == toys.CONFIGURATION
+
+    def test_that_is_too_short_for_the_objective_is_exported(
+        self, evoframe: Evoframe, tmp_path: Path
+    ) -> None:
+        path = tmp_path / "body.npz"
+        np.savez(path, material=np.ones((3, 2, 2), np.uint8), phase_cycles=np.zeros((3, 2, 2)))
+        exported = evoframe("export", path, "--to", "vxa", "--set", "simulator.duration=0.01")
+        assert exported.returncode == 0, exported.stderr
+        assert "0.01" in path.with_suffix(".vxa").read_text()
+
     def test_with_several_designs_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
         path = tmp_path / "bodies.npz"
         np.savez(path, material=np.ones((2, 3, 2, 2), np.uint8), phase_cycles=np.zeros((2, 3, 2, 2)))
@@ -137,33 +160,27 @@ class TestVxa:
         exported = evoframe("export", body, "--to", "vxa", *settings)
         assert exported.returncode == 0, exported.stderr
         there = evoframe("simulate", body, "--json", *settings).stdout
-        back = evoframe("simulate", body.with_suffix(".vxa"), "--json").stdout
+        back = evoframe("simulate", body.with_suffix(".vxa"), "--preset", "paper", "--json").stdout
         [first], [second] = (json.loads(text)["displacement"] for text in (there, back))
         assert second == pytest.approx(first, rel=1e-6)
 
     def test_yields_to_what_is_set(self, evoframe: Evoframe, body: Path) -> None:
-        assert evoframe("export", body, "--to", "vxa", "--set", "simulator.duration=0.09").returncode == 0
-        refused = evoframe("simulate", body.with_suffix(".vxa"), "--set", "simulator.duration=0.02")
+        exported = evoframe("export", body, "--to", "vxa", "--set", "simulator.duration=0.02")
+        assert exported.returncode == 0, exported.stderr
+        vxa = body.with_suffix(".vxa")
+        times = []
+        for settings in ([], ["--set", "simulator.duration=0.04"]):
+            [time] = json.loads(evoframe("simulate", vxa, "--json", *settings).stdout)["last_time"]
+            times.append(time)
+        assert 0.02 < times[0] < 0.03
+        assert 0.04 < times[1] < 0.05
+        refused = evoframe("simulate", vxa, "--set", "objective=tip-dz")
         assert refused.returncode == 2
-        assert "simulator.duration = 0.02 s" in refused.stderr
-        short = evoframe(
-            "export",
-            body,
-            "--to",
-            "vxa",
-            "--force",
-            "--set",
-            "simulator.duration=0.02",
-            "--set",
-            "objective.last=1",
-        )
-        assert short.returncode == 0, short.stderr
-        refused = evoframe("simulate", body.with_suffix(".vxa"))
-        assert refused.returncode == 2
-        assert f"{body.with_suffix('.vxa')}: objective: sample 5" in refused.stderr
+        assert "--set objective=tip-dz: objective: sample 5" in refused.stderr
 
     def test_of_a_run_is_its_champion(self, evoframe: Evoframe, tmp_path: Path) -> None:
         assert evoframe("run", "quick", "--set", "run.generations=1", "--out", "here").returncode == 0
         recorded = json.loads((tmp_path / "here" / "champion.json").read_text())["score"]
-        [score] = json.loads(evoframe("simulate", "here/champion.vxa", "--json").stdout)["displacement"]
+        scored = evoframe("simulate", "here/champion.vxa", "--preset", "paper", "--json").stdout
+        [score] = json.loads(scored)["displacement"]
         assert score == pytest.approx(recorded, rel=1e-6)

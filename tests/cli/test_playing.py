@@ -50,6 +50,14 @@ def test_ends_with_the_verification_of_its_champion(evoframe: Evoframe, tmp_path
     assert stored[0] == stored[1]
 
 
+def test_warns_of_simulations_that_the_objective_overlooks(evoframe: Evoframe, tmp_path: Path) -> None:
+    short = ("run", "quick", "--set", "run.generations=0")
+    warned = evoframe(*short, "--set", "simulator.duration=0.14", "--out", "here")
+    assert warned.returncode == 0, warned.stderr
+    assert "Warning: here: the objective 'tip-dz' looks at the first 0.067 s of 0.14 s\n" in warned.stderr
+    assert "Warning" not in evoframe(*short, "--out", "there").stderr
+
+
 def test_without_variants_says_nothing_of_a_verification(evoframe: Evoframe, tmp_path: Path) -> None:
     (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
     ran = evoframe("run", "-p", toys.__file__, "toy.toml", "--out", "here")

@@ -184,10 +184,38 @@ def test_what_an_earlier_report_had_is_removed_and_nothing_else(
     (there / "ranking.csv").write_text("changed by somebody")
     (there / "ranking.tex").unlink()
     (there / "ranking.tex").symlink_to(there / "mine.pdf")
-    assert evoframe("report", *study[:2], "r", "--out", "there").returncode == 0
+    refused = evoframe("report", *study[:2], "r", "--out", "there")
+    assert (refused.returncode, refused.stderr.startswith("Error: there: ")) == (2, True)
+    assert evoframe("report", *study[:2], "r", "--out", "there", "--force").returncode == 0
     found, wanted = contents(there), contents(tmp_path / "afresh")
     assert {name: found[name] for name in wanted} == wanted
     assert set(found) - set(wanted) == {"mine.pdf", "ranking.csv", "ranking.tex"}
+
+
+def test_only_what_evoframe_wrote_of_the_same_run_is_renewed(evoframe: Evoframe, tmp_path: Path) -> None:
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    plugin = ("-p", toys.__file__)
+    for seed in (1, 2):
+        run = ("run", *plugin, "toy.toml", "--seed", seed, "--out", f"r{seed}")
+        assert evoframe(*run).returncode == 0
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "summary.csv").write_text("mine")
+    refused = evoframe("report", *plugin, "r1", "--out", "there")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: there/summary.csv: ")
+    assert contents(tmp_path / "there") == {"summary.csv": b"mine"}
+    assert evoframe("report", *plugin, "r1", "--out", "there", "--force").returncode == 0
+    (tmp_path / "r1").rename(tmp_path / "moved")
+    assert evoframe("report", *plugin, "moved", "--out", "there").returncode == 0
+    before = contents(tmp_path / "there")
+    refused = evoframe("report", *plugin, "r2", "--out", "there")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: there: ")
+    assert contents(tmp_path / "there") == before
+    (tmp_path / "there" / "summary.csv").write_text("mine")
+    refused = evoframe("report", *plugin, "moved", "--out", "there")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: there/summary.csv: ")
 
 
 def test_a_list_of_something_else_is_refused_before_anything_is_written(

@@ -201,6 +201,13 @@ def test_measuring_from_python_needs_no_statistics(tmp_path: Path) -> None:
     assert python("-c", program, directory=tmp_path).stdout == "(2, 3)\n"
 
 
+def test_scores_that_overlook_the_end_are_warned_of(evoframe: Evoframe) -> None:
+    command = ("robustness", "--published", "--controllers", 3, "--set", "simulator.duration=0.14")
+    made = evoframe(*command, "--json")
+    assert made.returncode == 0, made.stderr
+    assert "looks at the first 0.067 s of 0.14 s\n" in made.stderr
+
+
 def test_a_terminal_sees_how_many_simulations_are_done(toy_preset: None, tmp_path: Path) -> None:
     shown = on_a_terminal(["robustness", *ALONE, "--controllers", "300"], tmp_path)
     assert "of 600 simulations" in shown

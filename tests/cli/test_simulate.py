@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import functools
 import json
+import math
 import re
 import zipfile
 from collections.abc import Callable
@@ -21,6 +22,7 @@ from evoframe.messages import quantity
 
 DATA = Path(__file__).parents[1] / "data"
 GOLDEN = DATA / "paper_preset.npz"
+WALKER = DATA / "measures" / "walker.vxa"
 
 
 @pytest.fixture(scope="module")
@@ -136,6 +138,154 @@ class TestFileWithItsOwnSettings:
         assert "'gain'" in refused.stderr
 
 
+class TestMeasure:
+    """What a file is scored by, and what is said about it."""
+
+    @pytest.fixture
+    def short(self, evoframe: Evoframe, one_body: Path) -> Path:
+        """A clamped body that ends before the paper's last sample, with its own settings."""
+        made = evoframe("export", one_body, "--to", "vxa", "--set", "simulator.duration=0.02")
+        assert made.returncode == 0, made.stderr
+        return one_body.with_suffix(".vxa")
+
+    def test_of_a_free_body_is_its_travel(self, evoframe: Evoframe) -> None:
+        result = json.loads(evoframe("simulate", WALKER, "--json").stdout)
+        assert (result["objective"], result["unit"], result["missing"]) == (["travel"], ["m"], [None])
+        assert result["score"] == [pytest.approx(3.827e-3, abs=5e-7)]
+        assert result["first_time"] == [pytest.approx(0.3, abs=5e-4)]
+        assert result["last_time"] == [pytest.approx(2.00028424, abs=1e-8)]  # the last step
+
+    def test_of_a_clamped_body_is_the_displacement_of_its_face(self, evoframe: Evoframe, short: Path) -> None:
+        simulated = evoframe("simulate", short, "--json", "--trace", "trace.csv")
+        assert simulated.returncode == 0, simulated.stderr
+        with (short.parent / "trace.csv").open() as file:
+            _, first, *_, last = csv.DictReader(file)
+        y, z = (float(last[f"face_{axis}"]) - float(first[f"face_{axis}"]) for axis in "yz")
+        result = json.loads(simulated.stdout)
+        assert result["objective"] == ["face-yz"]
+        assert result["score"] == [math.hypot(y, z)]
+        assert [result["first_time"], result["last_time"]] == [[float(first["time"])], [float(last["time"])]]
+
+    def test_is_named_with_its_times(self, evoframe: Evoframe) -> None:
+        header, row = evoframe("simulate", WALKER).stdout.splitlines()
+        assert re.split(r"\s{2,}", header.strip()) == ["design", "score", "objective", "measured"]
+        assert re.split(r"\s{2,}", row.strip()) == ["walker.vxa", "3.827 mm", "travel", "0.3 s to 2 s"]
+
+    def test_that_a_preset_brings_is_used_if_the_preset_is_given(self, evoframe: Evoframe) -> None:
+        result = json.loads(evoframe("simulate", WALKER, "--preset", "paper", "--json").stdout)
+        assert result["objective"] == ["tip-dz"]
+        assert result["last_time"][0] < 0.07
+
+    def test_that_looks_at_less_than_is_simulated_is_warned_of(
+        self, evoframe: Evoframe, one_body: Path
+    ) -> None:
+        longer = ("--set", "simulator.duration=0.25")
+        warned = evoframe("simulate", one_body, *longer)
+        assert warned.returncode == 0
+        assert warned.stderr.startswith("Warning: ")
+        assert warned.stderr.endswith("looks at the first 0.067 s of 0.25 s\n")
+        assert evoframe("-q", "simulate", one_body, *longer).stderr == ""
+        assert evoframe("simulate", one_body, *longer, "--set", "objective.last=-1").stderr == ""
+        assert evoframe("simulate", one_body).stderr == ""
+        assert evoframe("simulate", WALKER).stderr == ""
+        assert "of 2 s" in evoframe("simulate", WALKER, "--set", "objective=tip-dz").stderr
+
+    def test_that_does_not_fit_leaves_the_score_out(
+        self, evoframe: Evoframe, one_body: Path, tmp_path: Path
+    ) -> None:
+        command = ("simulate", one_body, "--set", "simulator.duration=0.02")
+        simulated = evoframe(*command, "--trace", "trace.csv", "--json")
+        assert simulated.returncode == 0, simulated.stderr
+        assert len((tmp_path / "trace.csv").read_text().splitlines()) == 9
+        result = json.loads(simulated.stdout)
+        assert (result["score"], result["objective"], result["diverged"]) == ([None], ["tip-dz"], [False])
+        assert (result["first_time"], result["last_time"], result["diverged_at"]) == ([None], [None], [None])
+        [reason] = result["missing"]
+        assert "sample 5" in reason
+        _, row, words = evoframe(*command).stdout.splitlines()
+        assert re.split(r"\s{2,}", row.strip()) == ["body.npz", "missing", "tip-dz", "-"]
+        assert words.endswith(reason)
+
+    def test_that_is_asked_for_must_fit(self, evoframe: Evoframe, short: Path) -> None:
+        for asked in ("objective=tip-yz", "objective.last=7", "objective={name='tip-dz', last=5}"):
+            refused = evoframe("simulate", short, "--set", asked, "--trace", "trace.csv")
+            assert refused.returncode == 2
+            assert refused.stderr.startswith(f"Error: --set {asked}: objective: sample")
+            assert not (short.parent / "trace.csv").exists()
+
+    def test_that_does_not_fit_hides_no_divergence(self, evoframe: Evoframe, one_body: Path) -> None:
+        wild = ("--set", "simulator.bond_damping=1e4", "--set", "simulator.duration=0.04")
+        result = json.loads(evoframe("simulate", one_body, *wild, "--json").stdout)
+        assert (result["score"], result["diverged"]) == ([None], [True])
+        assert result["diverged_at"][0] > 0
+        assert "diverged at step" in evoframe("simulate", one_body, *wild).stdout
+
+
+def contents(directory: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in directory.iterdir() if path.is_file()}
+
+
+class TestTracePath:
+    """A trace overwrites nothing unasked, and no input at all."""
+
+    def test_that_is_the_input_is_refused(self, evoframe: Evoframe, one_body: Path, tmp_path: Path) -> None:
+        before = one_body.read_bytes()
+        (tmp_path / "soft.csv").symlink_to(one_body)
+        (tmp_path / "hard.csv").hardlink_to(one_body)
+        (tmp_path / "sub").mkdir()
+        for path in (one_body, "body.npz", "sub/../body.npz", "soft.csv", "hard.csv"):
+            refused = evoframe("simulate", one_body, "--trace", path, "--force")
+            assert refused.returncode == 2
+            assert refused.stderr.startswith(f"Error: {path}: is an input")
+            assert one_body.read_bytes() == before
+
+    def test_that_is_a_preset_or_a_plugin_is_refused(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+        (tmp_path / "base.toml").write_text('extends = "toy.toml"\n')
+        (tmp_path / "mine.py").write_text(Path(toys.__file__).read_text())
+        (tmp_path / "one.toy").write_text("designs = [{ a = 2.0 }]\n")
+        before = contents(tmp_path)
+        command = ("simulate", "-p", "mine.py", "one.toy", "--preset", "base.toml")
+        for name in ("mine.py", "base.toml", "toy.toml", "one.toy"):
+            traced = evoframe(*command, "--set", "simulator=toy-varied", "--trace", name, "--force")
+            assert traced.returncode == 2
+            assert traced.stderr.startswith(f"Error: {name}: is an input")
+        assert contents(tmp_path) == before
+
+    def test_in_a_run_is_no_file_of_the_run(self, evoframe: Evoframe, tmp_path: Path) -> None:
+        assert evoframe("run", "quick", "--set", "run.generations=0", "--out", "here").returncode == 0
+        before = contents(tmp_path / "here")
+        for name in ("config.toml", "run.db", "champion.json", "verification.json"):
+            refused = evoframe("simulate", "here", "--trace", f"here/{name}", "--force")
+            assert refused.returncode == 2
+            assert refused.stderr.startswith(f"Error: here/{name}: is an input")
+        assert contents(tmp_path / "here") == before
+        assert evoframe("simulate", "here", "--trace", "here/trace.csv").returncode == 0
+
+    def test_is_standard_output_unless_that_has_json(self, evoframe: Evoframe, one_body: Path) -> None:
+        printed = evoframe("simulate", one_body, "--trace", "-").stdout.splitlines()
+        assert printed[0].startswith("step,time,")
+        assert printed[-1].split()[0] == "body.npz"
+        refused = evoframe("simulate", one_body, "--trace", "-", "--json")
+        assert (refused.returncode, refused.stdout) == (2, "")
+        assert refused.stderr.startswith("Error: --trace -: ")
+
+    def test_with_other_content_is_kept_without_force(
+        self, evoframe: Evoframe, one_body: Path, tmp_path: Path
+    ) -> None:
+        trace = tmp_path / "trace.csv"
+        trace.write_text("mine")
+        command = ("simulate", one_body, "--trace", "trace.csv")
+        refused = evoframe(*command)
+        assert refused.returncode == 2
+        assert refused.stderr.startswith("Error: trace.csv: ")
+        assert "--force" in refused.stderr
+        assert trace.read_text() == "mine"
+        assert evoframe(*command, "--force").returncode == 0
+        assert trace.read_text().startswith("step,time,")
+        assert evoframe(*command).returncode == 0  # the same again
+
+
 def test_a_trace_of_several_bodies_is_refused(evoframe: Evoframe, tmp_path: Path) -> None:
     refused = evoframe("simulate", GOLDEN, "--trace", tmp_path / "trace.csv")
     assert refused.returncode == 2
@@ -175,8 +325,11 @@ def test_json_has_an_entry_for_each_design_of_all_files(evoframe: Evoframe, tmp_
         "score": [2.0, 3.0, 4.0],
         "objective": ["length"] * 3,
         "unit": ["m"] * 3,
+        "first_time": [1.0] * 3,
+        "last_time": [1.0] * 3,
         "diverged": [False] * 3,
         "diverged_at": [None] * 3,
+        "missing": [None] * 3,
         "displacement": [2.0, 3.0, 4.0],
     }
     energies = json.loads(evoframe(*command, "--set", "objective=energy", **surroundings).stdout)
@@ -184,8 +337,8 @@ def test_json_has_an_entry_for_each_design_of_all_files(evoframe: Evoframe, tmp_
     assert energies == {**lengths, "objective": ["energy"] * 3, "unit": ["J"] * 3}
     command.remove("--json")
     header, first, *_ = evoframe(*command, "--set", "objective=energy", **surroundings).stdout.splitlines()
-    assert header.split() == ["design", "score"]
-    assert first.split() == ["two.toy[0]", "2", "J"]
+    assert header.split() == ["design", "score", "objective", "measured"]
+    assert first.split() == ["two.toy[0]", "2", "J", "energy", "1", "s", "to", "1", "s"]
 
 
 def test_a_simulation_that_diverges_is_said_to(evoframe: Evoframe, one_body: Path) -> None:

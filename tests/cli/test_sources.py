@@ -31,6 +31,19 @@ def test_a_study_stands_for_its_runs(evoframe: Evoframe, study: Path, tmp_path: 
     assert list(json.loads(evoframe("doctor", *TOYS, "s", "--json").stdout)) == runs
 
 
+def test_no_file_of_a_study_or_its_runs_is_overwritten(
+    evoframe: Evoframe, study: Path, tmp_path: Path
+) -> None:
+    [first, *_] = sorted(study.glob("*/*/00"))
+    for path in (study / "rows.csv", study / "study.toml", first / "champion.json", first / "run.db"):
+        before = path.read_bytes()
+        name = str(path.relative_to(tmp_path))
+        refused = evoframe("simulate", *TOYS, "s", "--trace", name, "--force")
+        assert refused.returncode == 2
+        assert refused.stderr.startswith(f"Error: {name}: is an input")
+        assert path.read_bytes() == before
+
+
 @pytest.mark.parametrize("command", ["study", "resume"])
 def test_a_directory_continues_its_study(evoframe: Evoframe, study: Path, command: str) -> None:
     rows = (study / "rows.csv").read_bytes()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from unittest.mock import ANY
 
 import numpy as np
 import pytest
@@ -54,7 +55,8 @@ class TestRun:
         score = load_run(toy_run).champion().score
         verified = evoframe("verify", *TOYS, "here")
         assert verified.returncode == 0, verified.stderr
-        title, *table, verdict = verified.stdout.splitlines()
+        title, measure, *table, verdict = verified.stdout.splitlines()
+        assert measure == "objective toy-late, in mm, from 1 s to 1 s"
         assert verdict.startswith("The score comes from gain (0% of unchanged)")
         least, middle, greatest = (quantity(factor * score, "m") for factor in (0.9, 1.0, 1.1))
         assert title == "here"
@@ -76,7 +78,8 @@ class TestRun:
         path.unlink()
         [document] = json.loads(evoframe("verify", *TOYS, "here", "--json", "--set", "run.seed=9").stdout)
         assert path.read_bytes() == before
-        assert {"body": "here", **json.loads(before)} == document
+        measure = {"objective": "toy-late", "first_time": 1.0, "last_time": 1.0}
+        assert {"body": "here", **measure, **json.loads(before)} == document
 
     @pytest.mark.parametrize("change", [["--set", "simulator.gain=2"], ["--preset", "toy.toml"]])
     def test_with_other_settings_is_not_kept(
@@ -116,7 +119,8 @@ class TestFile:
             ["two.toy[1]"],
             ["unchanged", "-2"],
         ]
-        assert columns(lines[1]) == ["variant", "score", "of unchanged"]
+        assert lines[1] == "objective toy-value, from 1 s to 1 s"
+        assert columns(lines[2]) == ["variant", "score", "of unchanged"]
 
     def test_as_json_has_full_precision(self, evoframe: Evoframe, designs: Path) -> None:
         settings = ["--preset", "toy.toml", "--set", "simulator={name='toy-varied', gain=0.1}"]
@@ -136,6 +140,25 @@ class TestFile:
         refused = evoframe("verify", *TOYS, "here", "--set", "simulator.speed=1")
         assert refused.returncode == 2
         assert "--set simulator.speed=1: simulator.speed: " in refused.stderr
+
+
+def test_a_walker_does_not_travel_without_contraction(evoframe: Evoframe) -> None:
+    walker = Path(__file__).parents[1] / "data" / "measures" / "walker.vxa"
+    [document] = json.loads(evoframe("verify", walker, "--json").stdout)
+    measure = (document["objective"], document["unit"], document["first_time"], document["last_time"])
+    assert measure == ("travel", "m", pytest.approx(0.3, abs=5e-4), pytest.approx(2.00028424, abs=1e-8))
+    shares = {row["name"]: row["share"] for row in document["variants"]}
+    assert abs(shares["contraction off"]) < 0.005
+    assert shares["twice the duration"] == pytest.approx(2.06, abs=0.01)  # at the end of 4 s
+    printed = evoframe("verify", walker).stdout
+    assert "objective travel, in mm, from 0.3 s to 2 s" in printed
+    assert "The score comes from contraction (0% of unchanged)" in printed
+
+
+def test_a_score_that_overlooks_the_end_is_warned_of(evoframe: Evoframe, published: Path) -> None:
+    verified = evoframe("verify", published, "--set", "simulator.duration=0.25", "--json")
+    assert verified.stderr.endswith("looks at the first 0.067 s of 0.25 s\n")
+    assert len(json.loads(verified.stdout)) == 3
 
 
 def test_the_published_bodies_move_without_contraction_and_hardly_without_collisions(
@@ -158,5 +181,8 @@ def test_a_champion_of_the_paper_is_verified_with_its_run(evoframe: Evoframe, tm
     assert re.search(r"\n contraction off +\S+ mm +-?\d+%", ran.stdout)
     kept = json.loads((tmp_path / "here" / "verification.json").read_text())
     [verified] = json.loads(evoframe("verify", "here", "--json", "--workers", 1).stdout)
-    assert verified == {"body": "here", **kept}
+    measure = {"objective": "tip-dz", "first_time": ANY, "last_time": ANY}
+    assert verified == {"body": "here", **measure, **kept}
+    assert verified["first_time"] == pytest.approx(0.0032029, abs=1e-7)
+    assert verified["last_time"] == pytest.approx(21 * 0.0032029, abs=1e-6)
     assert kept["score"] == kept["variants"][0]["median"]

@@ -251,6 +251,11 @@ def test_none_leaves_a_dotted_key_unset() -> None:
     assert (layer.origin, layer.tree) == ("run.seed=3", {"run": {"seed": 3}})
 
 
+def test_what_is_unset_later_does_not_unset_an_earlier_key() -> None:
+    assert Layers((*layers_of({"run.seed": 3}, {"run.seed": None}),)).merged() == {"run": {"seed": 3}}
+    assert Layers((*layers_of({"run.seed": 3}, {"run.seed": 4}),)).merged() == {"run": {"seed": 4}}
+
+
 def test_extends_and_provenance_of_a_run_are_not_settings() -> None:
     tables = {"extends": False, "run": {"seed": 3}, "provenance": {"evoframe": "0.1.0"}}
     assert layers_in(tables, "config.toml").merged() == {"run": {"seed": 3}}

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import attrs
 import pytest
 import toys
 from hypothesis import given, strategies as st
 
-from evoframe import Chosen, RunConfig, RunSettings, Source
+from evoframe import ADDED_LATER, Chosen, RunConfig, RunSettings, Source
 from evoframe.contract.config import COMPONENTS, POPULATION_COMPONENTS, is_role
 
 Load = Callable[..., RunConfig]
@@ -53,6 +53,27 @@ def test_only_the_executor_does_not_determine_the_result(toy_config: Load) -> No
     assert config.deciding().keys() == {"run", "populations", "plugins", *COMPONENTS} - {"executor"}
     longer = attrs.evolve(config, run=attrs.evolve(config.run, generations=5))
     assert longer.deciding() != config.deciding()
+
+
+@attrs.frozen
+class Grown(toys.Product):
+    """A simulator with an option that it received later."""
+
+    strength: float = attrs.field(default=1.0, metadata=ADDED_LATER)
+
+
+def test_an_option_added_later_counts_only_if_it_differs_from_its_default(toy_config: Load) -> None:
+    config = toy_config()
+
+    def grown(**options: float) -> RunConfig:
+        component = Grown(**attrs.asdict(cast("Any", config.simulator.component)), **options)
+        return attrs.evolve(config, simulator=attrs.evolve(config.simulator, component=component))
+
+    assert grown().deciding() == config.deciding()
+    assert grown().simulation() == config.simulation()
+    assert grown().tables()["simulator"]["strength"] == 1.0
+    assert grown(strength=2.0).deciding()["simulator"]["strength"] == 2.0
+    assert grown(strength=2.0).simulation()["simulator"]["strength"] == 2.0
 
 
 def test_deciding_tables_are_json_values(toy_config: Load) -> None:

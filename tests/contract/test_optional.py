@@ -21,8 +21,10 @@ from evoframe.contract.optional import (
     SupportsSettings,
     SupportsUnit,
     SupportsVariants,
+    SupportsWindow,
     Variant,
     unit_of,
+    window_of,
 )
 
 CAPABILITIES = {
@@ -95,6 +97,18 @@ def test_a_capability_requires_the_protocol_of_its_kind() -> None:
 def test_an_objective_may_have_a_unit() -> None:
     assert isinstance(toys.Late(), SupportsUnit)
     assert (unit_of(toys.Late()), unit_of(toys.Value())) == ("m", "")
+
+
+def test_the_window_of_an_objective_is_the_whole_record_unless_it_says_otherwise() -> None:
+    class AtTheEnd(toys.Value):
+        def window(self, times: Any) -> Any:
+            return times[-1], times[-1]
+
+    times = np.array([0.5, 1.0, 1.5])
+    assert window_of(toys.Value(), times) == (0.5, 1.5)
+    assert isinstance(AtTheEnd(), SupportsWindow)
+    assert window_of(AtTheEnd(), times) == (1.5, 1.5)
+    assert window_of(toys.Value(), times[:0]) is None
 
 
 def test_variants_are_compared_by_identity() -> None:

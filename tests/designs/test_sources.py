@@ -18,6 +18,8 @@ from evoframe.registry.registry import Plugins
 Load = Callable[..., RunConfig]
 
 WITH_SETTINGS = "designs = [{ a = 2.0, b = 3.0 }, { a = 1.0 }]\n[settings]\ngain = 2.0\nlimit = 100.0\n"
+POPULATION = '{encoder={name="toy-number", role="%s"}, evolver="toy-drift"}'
+PAPER = [f"populations={{a={POPULATION % 'a'}, b={POPULATION % 'b'}}}"]  # toys in the default preset
 WITHOUT = "designs = [{ a = 2.0, b = 3.0 }]\n"
 
 
@@ -109,6 +111,23 @@ class TestFile:
         with pytest.raises(ConfigurationError, match=r"run\.seed(.|\n)*simulator: .*nothing"):
             read_job(toy_path(WITHOUT), varied, ["simulator=nothing", "run.seed=-1"], plugins)
 
+    def test_whose_settings_cannot_deliver_the_record_need_not_be_scored(
+        self, plugins: Plugins, varied: str, toy_path: Written
+    ) -> None:
+        late = Path(varied)
+        late.write_text(late.read_text().replace('"toy-value"', '"toy-late"\nuntil = 3.0'))
+        path = toy_path(WITHOUT)
+        with pytest.raises(ConfigurationError) as caught:
+            read_job(path, varied, [], plugins)
+        assert [fault.key for fault in caught.value.faults] == ["objective"]
+        [fault] = caught.value.faults
+        assert read_job(path, varied, [], plugins, scored=False).unscored == fault.problem
+        assert read_job(path, varied, ["objective.until=1.0"], plugins, scored=False).unscored == ""
+        for asked in (["objective.until=2.0"], ['objective={name="toy-late", until=2.0}']):
+            with pytest.raises(ConfigurationError) as caught:
+                read_job(path, varied, asked, plugins, scored=False)
+            assert caught.value.faults[0].source == f"--set {asked[0]}"
+
     def test_for_a_simulator_that_cannot_read_files_is_refused(
         self, plugins: Plugins, varied: str, toy_path: Written
     ) -> None:
@@ -116,6 +135,48 @@ class TestFile:
         with pytest.raises(ConfigurationError, match="'toy-product'") as caught:
             read_job(path, varied, ["simulator=toy-product"], plugins)
         assert (caught.value.source, caught.value.key) == (str(path), "simulator")
+
+
+class TestObjective:
+    """The objective of a file with settings: suggested by the simulator, unless the user chose one."""
+
+    SUGGESTING = "simulator=toy-suggesting"
+
+    def test_of_a_file_with_settings_is_the_suggested_one(self, plugins: Plugins, toy_path: Written) -> None:
+        job = read_job(toy_path(WITH_SETTINGS), None, [*PAPER, self.SUGGESTING], plugins)
+        assert job.config.simulation()["objective"] == {"name": "toy-late", "until": 0.5}
+
+    def test_of_a_file_without_settings_is_that_of_the_preset(
+        self, plugins: Plugins, toy_path: Written
+    ) -> None:
+        overrides = [*PAPER, self.SUGGESTING]
+        job = read_job(toy_path(WITHOUT), None, overrides, plugins, scored=False)
+        assert job.config.objective.name == "tip-dz"
+        assert "'tip'" in job.unscored
+
+    def test_is_the_one_that_is_set(self, plugins: Plugins, toy_path: Written) -> None:
+        overrides = [*PAPER, self.SUGGESTING, "objective=toy-value"]
+        job = read_job(toy_path(WITH_SETTINGS), None, overrides, plugins)
+        assert job.config.simulation()["objective"] == {"name": "toy-value"}
+
+    def test_keeps_the_options_that_are_set(self, plugins: Plugins, toy_path: Written) -> None:
+        overrides = [*PAPER, self.SUGGESTING, "objective.until=0.25"]
+        job = read_job(toy_path(WITH_SETTINGS), None, overrides, plugins)
+        assert job.config.simulation()["objective"] == {"name": "toy-late", "until": 0.25}
+
+    def test_is_that_of_a_given_preset(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
+        job = read_job(toy_path(WITH_SETTINGS), varied, [self.SUGGESTING], plugins)
+        assert job.config.objective.name == "toy-value"
+
+    def test_that_does_not_exist_is_a_fault_of_the_file(
+        self, plugins: Plugins, toy_path: Written, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        simulator = plugins.find("simulator", "toy-suggesting").component
+        monkeypatch.setattr(simulator, "objective_for", lambda *_: {"name": "nothing"})
+        path = toy_path(WITH_SETTINGS)
+        with pytest.raises(ConfigurationError, match="nothing") as caught:
+            read_job(path, None, [*PAPER, self.SUGGESTING], plugins)
+        assert [(fault.source, fault.key) for fault in caught.value.faults] == [(str(path), "objective")]
 
 
 class TestRun:

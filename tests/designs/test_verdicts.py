@@ -36,6 +36,8 @@ def verification(**shares: float | None) -> Verification:
     [
         (1.0, "The score ignores gain (100% of unchanged)."),
         (0.9, "The score ignores gain (90% of unchanged)."),
+        (1.1, "The score ignores gain (110% of unchanged)."),
+        (2.4, "The score becomes 240% with gain off."),
         (0.7, "The score becomes 70% with gain off."),
         (0.5, "The score comes from gain (50% of unchanged)."),
         (-0.2, "The score comes from gain (-20% of unchanged)."),

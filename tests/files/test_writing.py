@@ -25,6 +25,15 @@ json_values = st.recursive(
 )
 
 
+def test_a_link_in_place_of_the_temporary_file_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "mine").write_text("before")
+    (tmp_path / ".file.new").symlink_to(tmp_path / "mine")
+    write_atomically(tmp_path / "file", b"after")
+    assert (tmp_path / "mine").read_text() == "before"
+    assert (tmp_path / "file").read_bytes() == b"after"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "mine"]
+
+
 @given(document=json_values)
 def test_json_is_read_back_as_it_was_written(tmp_path_factory: pytest.TempPathFactory, document: Any) -> None:
     path = tmp_path_factory.getbasetemp() / "document.json"

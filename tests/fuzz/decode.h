@@ -126,7 +126,7 @@ static struct vox_material next_material(struct source *source)
     return (struct vox_material){
         .used = 1,
         .youngs_modulus = next_scale(source, 1e3, 1e8),
-        .poisson_ratio = next_number(source, 0.0, 0.49),
+        .poisson_ratio = next_number(source, 0.0, 0.5),
         .density = next_scale(source, 1e2, 1e6),
         .expansion = next_number(source, -0.02, 0.02),
         .static_friction = next_number(source, 0.0, 2.0),
@@ -205,10 +205,22 @@ static void next_dampings(struct source *source, struct vox_settings *s)
 static void next_limits(struct source *source, struct vox_settings *s)
 {
     s->collision_envelope = next_number(source, 1.0, 2.0);
-    s->collision_horizon = next_number(source, 1.0, 4.0);
+    s->collision_horizon = next_number(source, 1.0, 10.0);
     s->collision_list_factor = next_number(source, 1.0, 2.0);
     s->largest_strain = next_scale(source, 100.0, 0.01);
     s->largest_distance = next_scale(source, 100.0, 0.01);
+}
+
+/* Settings that came later; they are decoded last, so that older inputs keep their meaning. */
+static void next_additions(struct source *source, struct arguments *a)
+{
+    struct vox_settings *s = &a->settings;
+    const uint8_t chosen = next_byte(source);
+    s->smallest_size = chosen & 1 ? next_number(source, 0.5, 1.0) : 0.1;
+    s->largest_size = chosen & 2 ? next_number(source, 1.0, 1.5) : 3.0;
+    s->size_clamp = chosen & 4 ? 1 : 0;
+    s->fluid_by_size = chosen & 8 ? 1 : 0;
+    s->falling_code = chosen & 16 ? a->n_codes - 1 : chosen & 32 ? next_count(source, 0, 256) : 0;
 }
 
 /* Returns NULL, a mask with one end fixed, or a pattern of bits, some of them invalid. */
@@ -287,6 +299,7 @@ static struct arguments next_arguments(struct source *source)
     a.fixed = next_fixed(source, &a);
     a.wanted = next_byte(source) ^ 0xffu;
     next_bodies(source, &a);
+    next_additions(source, &a);
     return a;
 }
 

@@ -70,6 +70,8 @@ static void explain(const struct arguments *a)
             s->self_collision, s->contact_friction, s->complete_contacts, s->collision_envelope, s->collision_horizon,
             s->collision_list_factor);
     fprintf(stderr, "largest_strain %g, largest_distance %g\n", s->largest_strain, s->largest_distance);
+    fprintf(stderr, "sizes %g to %g, clamp %d, fluid_by_size %d, falling_code %" PRId64 "\n", s->smallest_size,
+            s->largest_size, s->size_clamp, s->fluid_by_size, s->falling_code);
     for (int32_t code = 0; code < a->n_codes; code++) {
         const struct vox_material *m = &a->palette[code];
         if (m->used)

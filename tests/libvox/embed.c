@@ -13,6 +13,7 @@ int main(void)
         .voxel_size = 0.05,
         .time_step_fraction = 0.9, .substeps = 2, .duration = 0.07, .step_limit = 1000,
         .temperature_amplitude = 14.4714242553, .period = 0.25, .start_time = 0.01, .ramp = 0.02,
+        .smallest_size = 0.1, .largest_size = 3.0,
         .gravity = -9.81, .floor = 1, .fluid_drag = 750.0,
         .bond_damping = 1.0, .slow_damping = 0.01, .floor_damping = 0.8, .contact_damping = 0.5,
         .self_collision = 1, .contact_friction = 1, .complete_contacts = 1,

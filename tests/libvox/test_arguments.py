@@ -33,22 +33,25 @@ SETTINGS: dict[str, tuple[list[float], str]] = {
     "period": ([0.0, -0.25, NAN, INF, 9e-10, 1.1e9], "between 1e-9 and 1e9 s"),
     "start_time": ([-1e-9, NAN, INF, 1.1e9], "between 0 and 1e9 s"),
     "ramp": ([-1e-9, NAN, INF, 1.1e9], "between 0 and 1e9 s"),
+    "smallest_size": ([0.0, 9e-4, 1.1, NAN], "between 1e-3 and 1"),
+    "largest_size": ([0.9, 10.1, NAN, INF], "between 1 and 10"),
     "gravity": ([NAN, INF, -INF], "finite"),
     "floor_slope": ([-89.1, 89.1, 90.0, NAN, INF], "between -89 and 89 degrees"),
+    "falling_code": ([-1, 256], "between 0 and 255"),
     "fluid_drag": NOT_NEGATIVE,
     "bond_damping": NOT_NEGATIVE,
     "slow_damping": NOT_NEGATIVE,
     "floor_damping": NOT_NEGATIVE,
     "contact_damping": NOT_NEGATIVE,
     "collision_envelope": ([0.99, 2.01, NAN, INF], "between 1 and 2"),
-    "collision_horizon": ([0.99, 4.01, NAN], "between 1 and 4"),
+    "collision_horizon": ([0.99, 10.01, NAN], "between 1 and 10"),
     "collision_list_factor": ([0.99, 2.01, NAN], "between 1 and 2"),
     "largest_strain": ([0.0, -1.0, NAN, INF, 1.1e9], "above 0 and at most 1e9"),
     "largest_distance": ([0.0, -1.0, NAN, INF, 1.1e9], "above 0 and at most 1e9"),
 }
 MATERIALS: dict[str, tuple[list[float], str]] = {
     "youngs_modulus": ([0.0, -1.0, NAN, INF, 9e-7, 1.1e18], "between 1e-6 and 1e18 Pa"),
-    "poisson_ratio": ([-0.01, 0.5, NAN], "at least 0 and below 0.5"),
+    "poisson_ratio": ([-0.01, 0.51, NAN], "between 0 and 0.5"),
     "density": ([0.0, -1.0, NAN, INF, 9e-7, 1.1e18], "between 1e-6 and 1e18 kg/m3"),
     "expansion": ([NAN, INF, 1e308], "finite"),
     "static_friction": NOT_NEGATIVE,
@@ -63,9 +66,12 @@ EXTREMES: dict[str, list[float]] = {
     "period": [1e-9, 1e9],
     "start_time": [0.0, 1e9],
     "ramp": [0.0, 1e9],
+    "smallest_size": [1e-3, 1.0],
+    "largest_size": [1.0, 10.0],
     "floor_slope": [-89.0, 89.0],
+    "falling_code": [0, 255],
     "collision_envelope": [1.0, 2.0],
-    "collision_horizon": [1.0, 4.0],
+    "collision_horizon": [1.0, 10.0],
     "collision_list_factor": [1.0, 2.0],
     "largest_strain": [1e-300, 1e9],
     "largest_distance": [1e-300, 1e9],
@@ -74,6 +80,7 @@ EXTREMES: dict[str, list[float]] = {
 
 def test_every_setting_and_property_has_its_range_tested() -> None:
     switches = {"floor", "self_collision", "contact_friction", "complete_contacts"}
+    switches |= {"size_clamp", "fluid_by_size"}
     assert {field.name for field in attrs.fields(Settings)} == SETTINGS.keys() | switches
     assert {field.name for field in attrs.fields(Material)} == MATERIALS.keys()
 
@@ -109,7 +116,11 @@ def test_a_number_outside_the_range_is_rejected(
 
 
 def test_only_integers_are_in_the_range_of_steps() -> None:
-    assert {name for name, span in SETTING_RANGES.items() if span.whole} == {"substeps", "step_limit"}
+    assert {name for name, span in SETTING_RANGES.items() if span.whole} == {
+        "substeps",
+        "step_limit",
+        "falling_code",
+    }
     assert 1.5 not in SETTING_RANGES["substeps"]
     assert 2 in SETTING_RANGES["substeps"]
     assert NAN not in SETTING_RANGES["substeps"]

@@ -204,7 +204,7 @@ def test_voxels_without_bonds_turn_exactly(body: Body) -> None:
     loose[0, 0, 0] = 1
     alone: Body = (loose, phase, fixed)
     options: dict[str, Any] = HEAVY | {"complete_contacts": True}
-    options |= {"contact_damping": 0.2, "contact_friction": True}
+    options |= {"contact_damping": 0.2, "contact_friction": True, "fluid_by_size": True}
     other, expected = turned_about_z(alone)
     plain = simulate(alone, **options, floor=True)
     assert apart(simulate(other, **options, floor=True), expected(plain)) < 1e-9 * L

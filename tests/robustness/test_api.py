@@ -23,6 +23,14 @@ class TestFromPython:
         louder = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins, simulator={"gain": 2.0})
         assert (louder.scores == 2 * found.scores).all()
 
+    def test_a_file_with_settings_is_scored_by_what_it_is(self) -> None:
+        walker = Path(__file__).parents[1] / "data" / "measures" / "walker.vxa"
+        measured = measure_robustness(walker, controllers=1)
+        assert measured.setting.simulation["objective"]["name"] == "travel"
+        assert measured.scores[0, 0] > 0
+        chosen = measure_robustness(walker, controllers=1, objective="tip-dz")
+        assert chosen.setting.simulation["objective"]["name"] == "tip-dz"
+
     @pytest.mark.parametrize(("controllers", "seed"), [(0, 1), (1, -1)])
     def test_numbers_out_of_range_are_refused(
         self, toy_plugins: Plugins, two_runs: list[str], controllers: int, seed: int

@@ -87,6 +87,10 @@ class TestPython:
         assert finished.config["run"] == {"seed": 5, "generations": 1}
         assert finished.config["collaboration"] == {"name": "toy-first", "n": 3}
 
+    def test_the_seed_may_be_a_dotted_key(self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path) -> None:
+        finished = run(toy_file, out=tmp_path / "run", plugins=toy_plugins, **{"run.seed": 5})
+        assert finished.config["run"]["seed"] == 5
+
     def test_numpy_numbers_are_accepted(self, toy_file: Path, toy_plugins: Plugins, tmp_path: Path) -> None:
         finished = run(
             toy_file,

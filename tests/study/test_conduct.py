@@ -54,6 +54,17 @@ def test_a_directory_claimed_during_the_check_belongs_to_the_study(
     refuse_another(study, there)
 
 
+def test_a_file_with_the_same_values_keeps_its_comments(toy_study: Read, tmp_path: Path) -> None:
+    path = tmp_path / "there" / STUDY_FILE
+    claim(toy_study(), path.parent)
+    text = f"# mine\n{path.read_text()}"
+    path.write_text(text)
+    claim(toy_study(), path.parent)
+    assert path.read_text() == text
+    claim(toy_study("runs=4"), path.parent)
+    assert "runs = 4" in path.read_text()
+
+
 def test_the_directory_of_something_else_stays_unchanged(toy_study: Read, tmp_path: Path) -> None:
     (tmp_path / "there").mkdir()
     (tmp_path / "there" / "letter").touch()

@@ -323,6 +323,19 @@ class Steered(Varied):
 
 
 @attrs.frozen
+class Suggesting(Varied):
+    """Suggests an objective for files with settings, and simulates for longer than it tracks."""
+
+    duration: float = 1.0
+
+    def objective_for(self, designs: Sequence[Design]) -> Mapping[str, Any]:
+        return {"name": "toy-late", "until": float(len(designs)) / 4}
+
+    def duration_of(self, design: Design) -> float:
+        return self.duration
+
+
+@attrs.frozen
 class Fitting(Varied):
     """Has two options that depend on each other."""
 
@@ -432,6 +445,7 @@ def evoframe_simulators() -> Mapping[str, type[Any]]:
         "toy-varied": Varied,
         "toy-steered": Steered,
         "toy-fitting": Fitting,
+        "toy-suggesting": Suggesting,
         "toy-demanding": Demanding,
         "toy-unverifiable": Unverifiable,
     }

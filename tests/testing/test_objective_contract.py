@@ -14,6 +14,8 @@ RECORD = "test_its_record_has_tracks"
 FINITE = "test_the_score_is_finite"
 SAME = "test_the_same_outcome_has_the_same_score"
 NOT_CHANGED = "test_the_outcome_is_not_changed"
+WINDOW = "test_the_window_consists_of_two_samples"
+OUTSIDE = "test_samples_outside_the_window_do_not_matter"
 
 
 @attrs.frozen
@@ -48,6 +50,37 @@ class RiseAfterASecond(Rise):
 
 class TestRiseAfterASecond(ObjectiveContract):
     component = RiseAfterASecond()
+
+
+@attrs.frozen
+class RiseAtTheEnd(Rise):
+    """Uses the last two samples only."""
+
+    def window(self, times: Any) -> Any:
+        return float(times[max(len(times) - 2, 0)]), float(times[-1])
+
+    def score(self, outcome: Outcome) -> Any:
+        late = outcome.tracks["tip"][-2:, 2]
+        return float(late[-1] - late[0])
+
+
+class TestRiseAtTheEnd(ObjectiveContract):
+    component = RiseAtTheEnd()
+
+
+class LooksPastTheEnd(Rise):
+    def window(self, times: Any) -> Any:
+        return float(times[0]), float(times[-1]) + 1
+
+
+class LooksBackwards(RiseAtTheEnd):
+    def window(self, times: Any) -> Any:
+        return super().window(times)[::-1]
+
+
+class LooksAtMoreThanItSays(Rise):
+    def window(self, times: Any) -> Any:
+        return float(times[-1]), float(times[-1])
 
 
 class TestRise(ObjectiveContract):
@@ -97,6 +130,9 @@ class Centers(Rise):
         (Whole(), FINITE),
         (Counts(), SAME),
         (Centers(), NOT_CHANGED),
+        (LooksPastTheEnd(), WINDOW),
+        (LooksBackwards(), WINDOW),
+        (LooksAtMoreThanItSays(), OUTSIDE),
     ],
     ids=name_of,
 )

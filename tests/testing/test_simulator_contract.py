@@ -35,6 +35,8 @@ VARIANTS = "test_variants_are_scored_by_the_same_objective"
 SAME_VARIANTS = "test_the_same_design_has_the_same_variants"
 GEOMETRY = "test_a_geometry_has_frames_of_meshes"
 FIRST_FRAME = "test_one_frame_is_the_first_of_many"
+DURATION = "test_the_duration_is_the_time_of_the_last_step"
+OBJECTIVE = "test_the_suggested_objective_is_a_table_with_a_name"
 FORMATS = "test_each_format_gives_the_same_bytes_twice"
 DRAWN = "test_a_random_controller_depends_on_the_generator"
 BODY = "test_a_random_controller_keeps_the_body"
@@ -135,6 +137,12 @@ class Offering(Spring):
     strength: float = 1.0
     formats: ClassVar[tuple[str, ...]] = ("txt",)
 
+    def duration_of(self, design: Design) -> Any:
+        return STEPS * STEP if design.roles["spring"][0] else 0.0
+
+    def objective_for(self, designs: Sequence[Design]) -> Any:
+        return {"name": "rise"}
+
     def export(self, design: Design, format_: str) -> Any:
         return Export(repr(design.roles["spring"].tolist()).encode(), ("color",))
 
@@ -166,6 +174,28 @@ class TestOfferingWithinASelection(SpringContract):
 
     def record(self) -> Record:
         return Record(("weight",), every=0.02, samples=(1, 2, 4), initial=True)
+
+
+class ForgetsThatItCannotStart(Offering):
+    def duration_of(self, design: Design) -> Any:
+        return STEPS * STEP
+
+
+class CountsSteps(Offering):
+    def duration_of(self, design: Design) -> Any:
+        return STEPS
+
+
+class SuggestsNothing(Offering):
+    def objective_for(self, designs: Sequence[Design]) -> Any:
+        return {}
+
+
+class SuggestsAnotherEachTime(Offering):
+    calls: ClassVar[Any] = itertools.count()
+
+    def objective_for(self, designs: Sequence[Design]) -> Any:
+        return {"name": f"rise-{next(self.calls)}"}
 
 
 class DrawsAnew(Offering):
@@ -551,6 +581,10 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (VariesNothing(), VARIANTS),
         (VariantOfAnotherTrack(), VARIANTS),
         (DrawsAnew(), SAME_VARIANTS),
+        (ForgetsThatItCannotStart(), DURATION),
+        (CountsSteps(), DURATION),
+        (SuggestsNothing(), OBJECTIVE),
+        (SuggestsAnotherEachTime(), OBJECTIVE),
         (ShowsNothing(), GEOMETRY),
         (DrawsAllTheTime(), GEOMETRY),
         (DrawsFromTheFirstStep(), GEOMETRY),

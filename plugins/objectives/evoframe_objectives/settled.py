@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 import attrs
 import numpy as np
 from attrs import validators
+from numpy.typing import NDArray
 
 from evoframe import ConfigurationError, Outcome, Record
 
@@ -30,17 +31,17 @@ class _Settled:
     every: float = attrs.field(default=0.0, validator=validators.ge(0))
     after: float = attrs.field(default=0.0, validator=validators.ge(0))
 
-    def _settled(self, outcome: Outcome) -> int:
+    def _settled(self, times: NDArray[np.float64]) -> int:
         """Return the index of the first sample that counts.
 
         Raises:
             ConfigurationError: No sample counts, because the simulator ignores ``Record.until``.
         """
-        first = int(np.searchsorted(outcome.times * (1 + _ROUNDING), self.after))
-        if first == len(outcome.times):
+        first = int(np.searchsorted(times * (1 + _ROUNDING), self.after))
+        if first == len(times):
             raise ConfigurationError(
                 f"expected a sample at objective.after = {self.after} s or later, but the last sample is at "
-                f"{outcome.times[-1]} s; decrease objective.after or simulate for longer"
+                f"{times[-1]} s; decrease objective.after or simulate for longer"
             )
         return first
 
@@ -64,6 +65,14 @@ class Travel(_Settled):
         """The center of mass until the end of the simulation."""
         return Record(tracks=("body",), every=self.every, until=self.after)
 
+    def window(self, times: NDArray[np.float64]) -> tuple[float, float]:
+        """Return the times of the first sample that counts and of the last one.
+
+        Raises:
+            ConfigurationError: As for :meth:`score`.
+        """
+        return float(times[self._settled(times)]), float(times[-1])
+
     def score(self, outcome: Outcome) -> float:
         """Return the distance.
 
@@ -71,7 +80,7 @@ class Travel(_Settled):
             ConfigurationError: The simulation ends before *after*.
         """
         body = outcome.tracks["body"]
-        x, y, _ = map(float, body[-1] - body[self._settled(outcome)])
+        x, y, _ = map(float, body[-1] - body[self._settled(outcome.times)])
         return {"xy": math.hypot(x, y), "x": x, "-x": -x, "y": y, "-y": -y}[self.along]
 
 
@@ -95,5 +104,5 @@ class FacePeak(_Settled):
             ConfigurationError: The simulation ends before *after*.
         """
         face = outcome.tracks["face"]
-        _, y, z = (face[self._settled(outcome) :] - face[0]).T
+        _, y, z = (face[self._settled(outcome.times) :] - face[0]).T
         return float(np.hypot(y, z).max())

@@ -37,6 +37,7 @@ def report(
     *,
     out: str | Path | None = None,
     correction: Correction = "holm",
+    force: bool = False,
     plugins: Plugins | None = None,
 ) -> Report:
     """Write the report of a run or a study, as the command ``evoframe report`` does.
@@ -45,6 +46,7 @@ def report(
         source: A run, its directory, or the directory of a study; finished or not.
         out: Directory of the report; by default ``report`` in the directory of the source.
         correction: Correction of pairwise p-values for multiple comparisons.
+        force: Whether to overwrite files that evoframe did not write for this run or study.
         plugins: Plugins that the source names; by default the installed ones.
 
     Returns:
@@ -58,4 +60,4 @@ def report(
     """
     from evoframe.analysis import report as room  # noqa: PLC0415 - takes a second, and an extra
 
-    return room.report(source, out=out, correction=correction, plugins=plugins)
+    return room.report(source, out=out, correction=correction, force=force, plugins=plugins)

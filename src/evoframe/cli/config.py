@@ -14,7 +14,7 @@ from evoframe.cli.context import (
     set_option,
 )
 from evoframe.cli.streams import echo
-from evoframe.cli.writing import STDOUT, write_file
+from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
 from evoframe.config import commented, load_config, starter
 from evoframe.errors import InputError
 
@@ -55,7 +55,7 @@ Examples:
 )
 @click.argument("path", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True))
 @click.option("--preset", default="paper", show_default=True, metavar="P", help="Preset to start from.")
-@click.option("--force", is_flag=True, help="Overwrite a file with different content.")
+@force_option
 @common_options
 @click.pass_context
 def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
@@ -69,6 +69,6 @@ def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
         data = text.encode()
     except UnicodeEncodeError as error:
         raise InputError("its name is not UTF-8 text, as TOML requires; rename it", source=preset) from error
-    write_file(path, data, force=force)
+    write_file(path, data, force=force, inputs=files_of_settings(ctx, preset))
     if path != STDOUT:
         click.echo(f"To run it: {command(ctx, 'run', path)}", err=True)

@@ -6,7 +6,7 @@ import functools
 import logging
 import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -21,6 +21,7 @@ from evoframe.messages import quantity
 
 if TYPE_CHECKING:
     from evoframe.config import Layer
+    from evoframe.contract import Design, RunConfig, Score
     from evoframe.registry import Plugins
 
 __all__ = [
@@ -38,6 +39,8 @@ __all__ = [
     "preset_option",
     "scored",
     "set_option",
+    "span",
+    "warn_overlooked",
     "workers_option",
 ]
 
@@ -150,6 +153,22 @@ def scored(score: float | None, unit: str) -> str:
     return "diverged" if score is None else quantity(score, unit)
 
 
+def span(window: tuple[float, float] | None) -> str:
+    """Return the times between which a score is measured, as displayed; ``-`` for none."""
+    return "-" if window is None else f"{window[0]:.3g} s to {window[1]:.3g} s"
+
+
+def warn_overlooked(
+    ctx: click.Context, source: object, config: RunConfig, designs: Sequence[Design], scores: Sequence[Score]
+) -> None:
+    """Warn if designs of a *source* are simulated for longer than their objective looks at."""
+    from evoframe.designs import overlooked
+
+    found = overlooked(config, designs, scores)
+    if found is not None and not is_quiet(ctx):
+        click.echo(f"Warning: {source}: the objective '{config.objective.name}' {found}", err=True)
+
+
 def is_quiet(ctx: click.Context) -> bool:
     """Return whether only the requested output is printed (``-q``)."""
     return _common(ctx).verbosity < 0
@@ -201,8 +220,8 @@ def preset_option(function: F) -> F:
         "--preset",
         metavar="P",
         shell_complete=_complete_preset,
-        help="Preset (or TOML file) for settings that the file does not contain. With a run, replaces the "
-        "run's settings.  [default: the run's settings; paper for other files]",
+        help="Preset (or TOML file) for settings that the file does not contain, and for the objective. With "
+        "a run, replaces the run's settings.  [default: the run's settings; paper for other files]",
     )(function)
 
 

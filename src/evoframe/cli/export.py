@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
-from evoframe.cli.sources import RUN_OR_FILE
+from evoframe.cli.sources import RUN_OR_FILE, files_of
 from evoframe.cli.streams import echo
-from evoframe.cli.writing import STDOUT, write_file
+from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
 from evoframe.designs import export_job, read_job
 
 __all__ = ["export"]
@@ -33,7 +33,7 @@ Examples:
     metavar="PATH",
     help="File to write (-: standard output).  [default: RUN/champion.FORMAT, or FILE with that ending]",
 )
-@click.option("--force", is_flag=True, help="Overwrite a file with different content.")
+@force_option
 @preset_option
 @set_option
 @common_options
@@ -52,12 +52,13 @@ def export(
     A RUN is the directory of a run, for its champion. A FILE is any file that evoframe simulate reads, with
     one design. Settings that the format cannot express are listed on standard error.
     """
-    job = read_job(source, preset, overrides, plugins_of(ctx))
+    job = read_job(source, preset, overrides, plugins_of(ctx), scored=False)
     exported = export_job(job, format_)
     for entry in exported.left_out:
         click.echo(f"Warning: not exported: {entry}", err=True)
     default = job.path / f"champion.{format_}" if job.run else job.path.with_suffix(f".{format_}")
     path = out or default
-    write_file(path, exported.data, force=force)
+    inputs = [*files_of(ctx, [source]), *files_of_settings(ctx, preset)]
+    write_file(path, exported.data, force=force, inputs=inputs)
     if path != STDOUT:
         echo(path)

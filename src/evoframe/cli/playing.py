@@ -8,9 +8,9 @@ import signal
 import click
 from rich.table import Table
 
-from evoframe.cli.context import command, is_quiet, output, scored
+from evoframe.cli.context import command, is_quiet, output, scored, warn_overlooked
 from evoframe.cli.progress import Progress
-from evoframe.cli.signals import exit_code, stop_on_signals
+from evoframe.cli.signals import ended_by_signal, exit_code, stop_on_signals
 from evoframe.cli.streams import echo
 from evoframe.cli.verify import verification_table
 from evoframe.contract import RunConfig, SupportsVariants, unit_of
@@ -27,14 +27,18 @@ def play(ctx: click.Context, execution: Execution) -> None:
         execution.plugins.manager.register(Progress(), name="evoframe:progress")
     run: Run | None = None
     with stop_on_signals("this turn") as stop, contextlib.suppress(KeyboardInterrupt):
+        stop.last_words = lambda: _interrupted(ctx, execution)
         run = execution.play(stop.is_asked)
     if run is None or not run.finished():
-        last, directory = execution.last_turn, execution.directory
-        saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
-        todo = f"to continue: {command(ctx, 'resume', directory)}"
-        click.echo(f"Interrupted; {saved} in {directory}; {todo}", err=True)
+        click.echo(_interrupted(ctx, execution), err=True)
         ctx.exit(stop.exit_code)
     show_end(ctx, execution.config, run)
+
+
+def _interrupted(ctx: click.Context, execution: Execution) -> str:
+    last, directory = execution.last_turn, execution.directory
+    saved = "no turn was finished" if last is None else f"all turns up to {last} are saved"
+    return f"Interrupted; {saved} in {directory}; to continue: {command(ctx, 'resume', directory)}"
 
 
 def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
@@ -44,24 +48,26 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
         echo(directory)
     else:
         output().print(_summary(run, config))
+    interrupted = (
+        f"Interrupted; the run is complete and saved in {directory}, but its champion is not verified; "
+        f"to verify it: {command(ctx, 'verify', directory)}"
+    )
     try:
         if not quiet and isinstance(config.simulator.component, SupportsVariants):
             click.echo("verifying the champion", err=True)
-        verification = verify_champion(config, run)
+        with ended_by_signal(interrupted):
+            verification = verify_champion(config, run)
     except KeyboardInterrupt:
-        click.echo(
-            f"Interrupted; the run is complete and saved in {directory}, but its champion is not verified; "
-            f"to verify it: {command(ctx, 'verify', directory)}",
-            err=True,
-        )
+        click.echo(interrupted, err=True)
         ctx.exit(exit_code(signal.SIGINT))
     if quiet:
         return
     if verification is not None:
-        console = output()
+        console, design = output(), run.champion().design
         console.print()
         console.print(verification_table(verification))
-        console.print(verdict(verification, config, run.champion().design), soft_wrap=True)
+        console.print(verdict(verification, config, design), soft_wrap=True)
+        warn_overlooked(ctx, directory, config, [design], [verification.unchanged])
     click.echo(
         f"\nNext, figures and a page that shows the champion moving:\n  {command(ctx, 'report', directory)}",
         err=True,

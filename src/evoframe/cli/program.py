@@ -14,7 +14,7 @@ import click
 
 from evoframe._version import __version__
 from evoframe.cli.context import common_options, modules_of, plugin_options, plugins_of
-from evoframe.cli.signals import exit_code
+from evoframe.cli.signals import ended_by_signal, exit_code
 from evoframe.cli.streams import divert_plugin_text, finish_streams, prepare_streams, restore_descriptor
 from evoframe.errors import EvoframeError, PluginWarning, RunError
 from evoframe.messages import full_text
@@ -152,7 +152,8 @@ def main() -> None:
     warnings.showwarning = _show_warning
     warnings.simplefilter("always", PluginWarning)
     try:
-        cli(prog_name="evoframe")
+        with ended_by_signal():
+            cli(prog_name="evoframe")
     except SystemExit as end:
         sys.exit(finish_streams() if end.code in (None, 0) else end.code)
 

@@ -30,17 +30,21 @@ Examples:
     metavar="DIR",
     help="Directory to write to; only with one RUN or STUDY.  [default: RUN/report or STUDY/report]",
 )
+@click.option(
+    "--force", is_flag=True, help="Overwrite files that evoframe did not write for this RUN or STUDY."
+)
 @correction_option
 @common_options
 @click.pass_context
 def report(
-    ctx: click.Context, directories: tuple[Path, ...], out: Path | None, correction: Correction
+    ctx: click.Context, directories: tuple[Path, ...], out: Path | None, force: bool, correction: Correction
 ) -> None:
     """Write the report of a run or study: figures, tables, conclusions and an interactive page.
 
     RUN or STUDY is a directory; the run or study need not be finished. The report of a study compares the
     values of the grid's last key, separately for each combination of the other keys, by two measures: the
-    score of the best pair, and the fitness. The page report.html contains everything in one file.
+    score of the best pair, and the fitness. The page report.html contains everything in one file. A report of
+    the same RUN or STUDY is renewed; other files are not overwritten without --force.
     """
     with needing_extra("report", "reports"):
         from evoframe.analysis import report as room  # noqa: PLC0415 - takes a second, and an extra
@@ -49,7 +53,7 @@ def report(
     if out is not None and len(directories) > 1:
         raise InputError(f"expected one RUN or STUDY, found {len(directories)}", source=f"--out {out}")
     for directory in directories:
-        written = write(directory, out=out, correction=correction, plugins=plugins_of(ctx))
+        written = write(directory, out=out, correction=correction, force=force, plugins=plugins_of(ctx))
         if is_quiet(ctx):
             echo(written.directory)
         else:

@@ -23,6 +23,7 @@ from evoframe.cli.context import (
     plugins_of,
     preset_option,
     set_option,
+    warn_overlooked,
     workers_option,
 )
 from evoframe.cli.progress import bar_columns
@@ -30,7 +31,16 @@ from evoframe.cli.sources import RUN_STUDY_OR_FILE
 from evoframe.cli.streams import echo
 from evoframe.config import Layer
 from evoframe.messages import unit_factor, unit_name
-from evoframe.robustness import measure, read_candidates, refuse_another, setting_of, write_measurement
+from evoframe.robustness import (
+    Candidates,
+    Setting,
+    first_simulation,
+    measure,
+    read_candidates,
+    refuse_another,
+    setting_of,
+    write_measurement,
+)
 
 __all__ = ["robustness"]
 
@@ -108,6 +118,7 @@ def robustness(
     prepare_directory(directory)  # fails before the measurement, which takes time
     with _bar(len(setting.bodies) * controllers, quiet=is_quiet(ctx)) as on_progress:
         measured = measure(candidates, setting, on_progress)
+    _warn_overlooked(ctx, candidates, setting)
     written = write_measurement(measured, directory)  # saved even if the analysis fails
     found = analysis.find(measured, correction)
     written += analysis.write_findings(found, directory)
@@ -118,6 +129,12 @@ def robustness(
     echo(f"\n{analysis.conclusions(found)}", nl=False)
     if not is_quiet(ctx):
         click.echo(f"{len(written)} files written to {directory}", err=True)
+
+
+def _warn_overlooked(ctx: click.Context, candidates: Candidates, setting: Setting) -> None:
+    """Warn if simulations are longer than the objective looks at, as that of the first body shows."""
+    design, score = first_simulation(candidates, setting)
+    warn_overlooked(ctx, candidates.bodies[0].source, candidates.config, [design], [score])
 
 
 @contextmanager

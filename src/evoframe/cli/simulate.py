@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from pathlib import Path
 from typing import Any
@@ -17,10 +18,13 @@ from evoframe.cli.context import (
     preset_option,
     scored,
     set_option,
+    span,
+    warn_overlooked,
     workers_option,
 )
-from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
-from evoframe.cli.streams import echo, lend_descriptor
+from evoframe.cli.sources import RUN_STUDY_OR_FILE, files_of, read_jobs
+from evoframe.cli.streams import echo
+from evoframe.cli.writing import STDOUT, files_of_settings, force_option, refuse_inputs, write_file
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
 from evoframe.designs import Job, naming, simulate_job, trace_of
@@ -44,8 +48,9 @@ Examples:
     "--json",
     "as_json",
     is_flag=True,
-    help="Print JSON with full precision: the lists labels, score, objective, unit, diverged and diverged_at "
-    "with one entry for each design; if every unit is m, also displacement, equal to score.",
+    help="Print JSON with full precision: the lists labels, score, objective, unit, first_time and last_time "
+    "(s, between which the score is measured), diverged, diverged_at and missing (reason why there is no "
+    "score) with one entry for each design; if every unit is m, also displacement, equal to score.",
 )
 @click.option(
     "--trace",
@@ -53,6 +58,7 @@ Examples:
     metavar="OUT.csv",
     help="Write the positions of the traced points of one body after every step.",
 )
+@force_option
 @workers_option
 @common_options
 @click.pass_context
@@ -63,6 +69,7 @@ def simulate(
     overrides: tuple[str, ...],
     as_json: bool,
     trace: Path | None,
+    force: bool,
     workers: list[Layer],
 ) -> None:
     """Simulate designs and print their scores.
@@ -71,13 +78,21 @@ def simulate(
     A STUDY is the directory of a study, for the champions of its runs.
     A FILE is an .npz file with the arrays material ([X,Y,Z] or [N,X,Y,Z]; codes: 0 empty, 1 passive,
     3 contractile) and phase_cycles of the same shape, or a .vxa file, which contains its own settings.
+
+    Unless --set or --preset choose an objective, a file with its own settings is scored from the first to
+    the last step: a body that is held somewhere by the displacement of its free face, a free body by the
+    distance that it travels. A simulation that is too short for the objective has no score.
     """
-    jobs = read_jobs(ctx, files, preset, [*overrides, *workers])
+    if as_json and trace == STDOUT:
+        raise InputError("expected a file, since --json prints to standard output", source="--trace -")
+    jobs = read_jobs(ctx, files, preset, [*overrides, *workers], scored=False)
     if trace is not None:
-        _write_trace(trace, jobs)
+        inputs = [*files_of(ctx, files), *files_of_settings(ctx, preset)]
+        refuse_inputs(trace, inputs)  # before the simulation, which takes time
+        write_file(trace, _trace(jobs), force=force, inputs=inputs)
     scored_jobs = [(job, simulate_job(job)) for job in jobs]
     bodies = [
-        _Body(label, score, job.config.objective.name, unit_of(job.config.objective.component))
+        _Body(label, score, job.config.objective.name, unit_of(job.config.objective.component), job.unscored)
         for job, scores in scored_jobs
         for label, score in zip(job.labels, scores, strict=True)
     ]
@@ -85,6 +100,11 @@ def simulate(
         echo(json.dumps(_document(bodies)))
     else:
         output().print(_table(bodies))
+        for job in jobs:
+            if job.unscored:
+                echo(f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}")
+    for job, scores in scored_jobs:
+        warn_overlooked(ctx, job.path, job.config, job.designs, scores)
 
 
 @attrs.frozen
@@ -95,6 +115,19 @@ class _Body:
     score: Score
     objective: str
     unit: str
+    unscored: str
+
+    @property
+    def times(self) -> tuple[float, float] | tuple[None, None]:
+        """First and last time on which the score depends, s."""
+        return self.score.window or (None, None)
+
+    @property
+    def outcome(self) -> str:
+        """The score with its unit, or the reason why there is none."""
+        if self.score.diverged_at is not None:
+            return f"diverged at step {self.score.diverged_at}"
+        return "missing" if self.unscored else scored(self.score.value, self.unit)
 
 
 def _document(bodies: list[_Body]) -> dict[str, Any]:
@@ -105,8 +138,11 @@ def _document(bodies: list[_Body]) -> dict[str, Any]:
         "score": values,
         "objective": [body.objective for body in bodies],
         "unit": [body.unit for body in bodies],
-        "diverged": [value is None for value in values],
+        "first_time": [body.times[0] for body in bodies],
+        "last_time": [body.times[1] for body in bodies],
+        "diverged": [body.score.diverged_at is not None for body in bodies],
         "diverged_at": [body.score.diverged_at for body in bodies],
+        "missing": [body.unscored or None for body in bodies],
     }
     return {**document, "displacement": values} if _are_lengths(bodies) else document
 
@@ -119,21 +155,24 @@ def _table(bodies: list[_Body]) -> Table:
     table = Table(box=None, header_style="bold")
     table.add_column("design", overflow="fold")
     table.add_column("score", overflow="fold")
+    table.add_column("objective", overflow="fold")
+    table.add_column("measured", overflow="fold")
     for body in bodies:
-        step = f" at step {body.score.diverged_at}" if body.score.value is None else ""
-        table.add_row(body.label, scored(body.score.value, body.unit) + step)
+        table.add_row(body.label, body.outcome, body.objective, span(body.score.window))
     return table
 
 
-def _write_trace(path: Path, jobs: list[Job]) -> None:
+def _trace(jobs: list[Job]) -> bytes:
+    """Return the trace of a single design as CSV.
+
+    Raises:
+        InputError: There are several designs.
+    """
     given = [(job, design) for job in jobs for design in job.designs]
     if len(given) != 1:
         raise InputError(f"expected one design to trace, found {len(given)}", source="--trace")
     [(job, design)] = given
+    text = io.StringIO()
     with naming(job.path):
-        rows = list(trace_of(job.config.simulator.component, design))
-    try:
-        with lend_descriptor(), path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file, lineterminator="\n").writerows(rows)
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror}", source=path) from error
+        csv.writer(text, lineterminator="\n").writerows(trace_of(job.config.simulator.component, design))
+    return text.getvalue().encode()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +14,14 @@ from evoframe.config import Layer, preset_names
 from evoframe.designs import Job, read_job
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import exists, is_file
-from evoframe.record import CONFIG_FILE
-from evoframe.study import describes_study, is_study, runs_in, study_names
+from evoframe.record import CONFIG_FILE, RECORD_FILES
+from evoframe.study import TABLES, describes_study, is_study, runs_in, study_names
 
 __all__ = [
     "RUN_OR_FILE",
     "RUN_OR_STUDY",
     "RUN_STUDY_OR_FILE",
+    "files_of",
     "read_jobs",
     "refuse_preset",
     "refuse_run_and_study",
@@ -67,12 +68,29 @@ def with_runs_of_studies(ctx: click.Context, paths: Iterable[Path]) -> list[Path
     return found
 
 
+def files_of(ctx: click.Context, paths: Iterable[Path]) -> Iterator[Path]:
+    """Yield the files that contain the data of runs, studies and files; some need not exist."""
+    for path in paths:
+        if not path.is_dir():
+            yield path
+            continue
+        yield from (path / name for name in (*RECORD_FILES, *TABLES))
+        if is_study(path):
+            yield from files_of(ctx, runs_in(path, plugins_of(ctx)))
+
+
 def read_jobs(
-    ctx: click.Context, paths: Iterable[Path], preset: str | None, overrides: Sequence[str | Layer]
+    ctx: click.Context,
+    paths: Iterable[Path],
+    preset: str | None,
+    overrides: Sequence[str | Layer],
+    *,
+    scored: bool = True,
 ) -> list[Job]:
-    """Read the designs of files, of runs, and of the runs of studies."""
+    """Read the designs of files, of runs, and of the runs of studies, as by :func:`read_job`."""
     plugins = plugins_of(ctx)
-    return [read_job(path, preset, overrides, plugins) for path in with_runs_of_studies(ctx, paths)]
+    found = with_runs_of_studies(ctx, paths)
+    return [read_job(path, preset, overrides, plugins, scored=scored) for path in found]
 
 
 def refuse_run_and_study(ctx: click.Context, source: str) -> None:
@@ -83,7 +101,7 @@ def refuse_run_and_study(ctx: click.Context, source: str) -> None:
     """
     if source in preset_names():
         return
-    if is_file(Path(source) / CONFIG_FILE):
+    if exists(Path(source)) and is_file(Path(source) / CONFIG_FILE):
         todo = f"to resume it: {command(ctx, 'resume', source)}"
         raise ConfigurationError(f"is the directory of a run; {todo}", source=source)
     if source in study_names() or is_study(Path(source)) or describes_study(source):

@@ -77,11 +77,13 @@ def lend_descriptor() -> Iterator[None]:
     if not isinstance(stdout, StandardStream):
         yield
         return
+    previous = os.dup(_STDOUT)
     stdout.lend(_STDOUT)
     try:
         yield
     finally:
-        os.dup2(_STDERR, _STDOUT)
+        os.dup2(previous, _STDOUT)
+        os.close(previous)
 
 
 def finish_streams() -> int:

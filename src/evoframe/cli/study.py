@@ -100,6 +100,7 @@ def study(
         _print_failed(plan.found)
         return
     with stop_on_signals("the turns in progress") as stop, StudyProgress(quiet=is_quiet(ctx)) as progress:
+        stop.last_words = lambda: "Interrupted; to continue, repeat the same command"
         result = run_study(
             found,
             out=out,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 from rich.table import Table
@@ -14,13 +15,15 @@ from evoframe.cli.context import (
     output,
     preset_option,
     set_option,
+    span,
+    warn_overlooked,
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, read_jobs
 from evoframe.cli.streams import echo
 from evoframe.config import Layer
 from evoframe.designs import Job, keep_of_job, verdict, verify_job
-from evoframe.messages import quantity
+from evoframe.messages import quantity, unit_name
 from evoframe.record import Finding, Verification
 
 __all__ = ["verification_table", "verify"]
@@ -58,21 +61,41 @@ def verify(
     jobs = read_jobs(ctx, sources, preset, [*overrides, *workers])
     found = [(job, verify_job(job)) for job in jobs]
     if as_json:
-        labelled = [pair for job, made in found for pair in zip(job.labels, made, strict=True)]
-        echo(json.dumps([{"body": label, **each.to_json()} for label, each in labelled]))
+        labelled = [
+            (job, label, each) for job, made in found for label, each in zip(job.labels, made, strict=True)
+        ]
+        echo(json.dumps([_document(job, label, each) for job, label, each in labelled]))
     else:
         for job, verifications in found:
             _print(job, verifications)
+    for job, verifications in found:
+        unchanged = [each.unchanged for each in verifications]
+        warn_overlooked(ctx, job.path, job.config, job.designs, unchanged)
     for job, verifications in found:  # after printing, which needs no writable directory
         keep_of_job(job, verifications)
+
+
+def _document(job: Job, label: str, verification: Verification) -> dict[str, Any]:
+    first, last = verification.unchanged.window or (None, None)
+    measure = {"objective": job.config.objective.name, "first_time": first, "last_time": last}
+    return {"body": label, **measure, **verification.to_json()}
 
 
 def _print(job: Job, verifications: Sequence[Verification]) -> None:
     console = output()
     for label, design, verification in zip(job.labels, job.designs, verifications, strict=True):
         console.print(label, style="bold", soft_wrap=True)
+        console.print(_measure(job, verification), soft_wrap=True)
         console.print(verification_table(verification))
         console.print(verdict(verification, job.config, design), soft_wrap=True)
+
+
+def _measure(job: Job, verification: Verification) -> str:
+    """Return the objective, its unit, and the times between which it measures the unchanged design."""
+    unit, window = unit_name(verification.unit), verification.unchanged.window
+    parts = [f"objective {job.config.objective.name}"]
+    parts += [f"in {unit}"] if unit else []
+    return ", ".join([*parts, *([f"from {span(window)}"] if window else [])])
 
 
 def verification_table(verification: Verification) -> Table:

@@ -3,7 +3,7 @@
 from evoframe.config.comments import commented, starter
 from evoframe.config.hints import settings_like
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
-from evoframe.config.resolve import load_config, named_simulator, resolve_layers
+from evoframe.config.resolve import load_config, named_simulator, resolve_layers, resolve_simulator
 
 __all__ = [
     "Layer",
@@ -17,6 +17,7 @@ __all__ = [
     "preset_names",
     "read_layers",
     "resolve_layers",
+    "resolve_simulator",
     "settings_like",
     "starter",
 ]

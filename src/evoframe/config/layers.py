@@ -144,10 +144,10 @@ def layer_of(origin: str, key: str, value: Any) -> Layer:
     return Layer(origin, tree)
 
 
-def layers_of(settings: Mapping[str, Any]) -> list[Layer]:
+def layers_of(*settings: Mapping[str, Any]) -> list[Layer]:
     """Return a layer for each dotted key of *settings* from Python code; ``None`` leaves a key unset."""
-    given = {key: value for key, value in settings.items() if value is not None}
-    return [layer_of(f"{key}={value!r}", key, value) for key, value in given.items()]
+    given = [item for each in settings for item in each.items() if item[1] is not None]
+    return [layer_of(f"{key}={value!r}", key, value) for key, value in given]
 
 
 @attrs.frozen

@@ -29,7 +29,7 @@ from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import found
 from evoframe.registry import KINDS, Offer, Plugins, discover
 
-__all__ = ["load_config", "named_simulator", "resolve_layers"]
+__all__ = ["load_config", "named_simulator", "resolve_layers", "resolve_simulator"]
 
 C = TypeVar("C")
 _RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
@@ -60,13 +60,14 @@ def load_config(
     return resolve_layers(layers, label, plugins or discover())
 
 
-def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
+def resolve_layers(layers: Layers, label: str, plugins: Plugins, *, scored: bool = True) -> RunConfig:
     """Resolve and check layers of settings.
 
     Args:
         layers: The settings.
         label: Name of the configuration, for the default directory.
         plugins: The plugins to choose from.
+        scored: Whether simulations must provide the samples that the objective requires.
 
     Raises:
         ConfigurationError: The configuration is invalid; lists all faults, each with its file and key.
@@ -75,7 +76,7 @@ def resolve_layers(layers: Layers, label: str, plugins: Plugins) -> RunConfig:
     settings = reading.section("plugins", PluginSettings) or PluginSettings()
     usable = plugins.without(settings.block)
     reading.refuse_missing(usable, settings.require)
-    config = reading.config(usable, settings, label)
+    config = reading.config(usable, settings, label, scored=scored)
     if config is None:
         error = _joined(reading.faults, layers)
         for name in plugins.missing(layers.local_plugins):
@@ -106,15 +107,21 @@ def named_simulator(
     if not isinstance(table, Mapping) or "name" not in table:
         return None
     alone = layer_of("", "simulator", {"name": table["name"]})
-    for given in ([alone], overrides):
-        tree = read_layers(source, given).merged()
-        reading = _Reading(tree)
-        settings = reading.section("plugins", PluginSettings) or PluginSettings()
-        usable = plugins.without(settings.block)
-        chosen = reading.chosen(usable, "simulator", tree["simulator"], ("simulator",))
-        if chosen is not None:
-            return chosen
-    return None
+    found = (resolve_simulator(read_layers(source, given), plugins) for given in ([alone], overrides))
+    return next(filter(None, found), None)
+
+
+def resolve_simulator(layers: Layers, plugins: Plugins) -> Chosen[Simulator] | None:
+    """Return the simulator of layers of settings, whatever their other settings.
+
+    Returns:
+        The simulator; ``None`` if there are faults, which :func:`resolve_layers` reports.
+    """
+    tree = layers.merged()
+    reading = _Reading(tree)
+    settings = reading.section("plugins", PluginSettings) or PluginSettings()
+    usable = plugins.without(settings.block)
+    return reading.chosen(usable, "simulator", tree.get("simulator"), ("simulator",))
 
 
 def _joined(faults: list[Fault], layers: Layers) -> ConfigurationError:
@@ -151,14 +158,16 @@ class _Reading:
             except PluginError as error:
                 self.faults.append(Fault(("plugins", "require"), str(error)))
 
-    def config(self, plugins: Plugins, settings: PluginSettings, label: str) -> RunConfig | None:
+    def config(
+        self, plugins: Plugins, settings: PluginSettings, label: str, *, scored: bool
+    ) -> RunConfig | None:
         """Return the configuration, or ``None`` if there are faults."""
         self._refuse_unknown_keys(plugins)
         run = self.section("run", RunSettings)
         choose = functools.partial(self.chosen, plugins)
         populations = self._populations(choose)
         chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
-        self.faults += _Checks(populations, chosen).faults()
+        self.faults += _Checks(populations, chosen).faults(scored=scored)
         if self.faults:
             self.faults = with_hints(self.faults, known_keys(self.tree, plugins))
             return None
@@ -247,8 +256,9 @@ class _Checks:
         self.complete = bool(populations) and len(self.populations) == len(populations)
         self.chosen = {key: given.component for key, given in chosen.items() if given is not None}
 
-    def faults(self) -> list[Fault]:
-        return [*self._sizes(), *self._collaboration(), *self._roles(), *self._record()]
+    def faults(self, *, scored: bool) -> list[Fault]:
+        record = self._record() if scored else ()
+        return [*self._sizes(), *self._collaboration(), *self._roles(), *record]
 
     def _sizes(self) -> Iterator[Fault]:
         for role, population in self.populations.items():

@@ -2,6 +2,7 @@
 
 from evoframe.contract.blame import blaming
 from evoframe.contract.config import (
+    ADDED_LATER,
     COMPONENTS,
     POPULATION_COMPONENTS,
     Chosen,
@@ -14,11 +15,13 @@ from evoframe.contract.config import (
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
 from evoframe.contract.optional import (
+    SupportsDuration,
     SupportsExemptions,
     SupportsExport,
     SupportsGeometry,
     SupportsGraph,
     SupportsInputNames,
+    SupportsObjective,
     SupportsOutputNames,
     SupportsProvenance,
     SupportsPublished,
@@ -27,8 +30,10 @@ from evoframe.contract.optional import (
     SupportsSettings,
     SupportsUnit,
     SupportsVariants,
+    SupportsWindow,
     Variant,
     unit_of,
+    window_of,
 )
 from evoframe.contract.protocols import (
     Aggregator,
@@ -59,6 +64,7 @@ from evoframe.contract.values import (
 from evoframe.contract.voxels import CONTRACTILE, CONTROLLER, EMPTY, MORPHOLOGY, PASSIVE
 
 __all__ = [
+    "ADDED_LATER",
     "COMPONENTS",
     "CONTRACTILE",
     "CONTROLLER",
@@ -96,11 +102,13 @@ __all__ = [
     "Scores",
     "Simulator",
     "Source",
+    "SupportsDuration",
     "SupportsExemptions",
     "SupportsExport",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
+    "SupportsObjective",
     "SupportsOutputNames",
     "SupportsProvenance",
     "SupportsPublished",
@@ -109,10 +117,12 @@ __all__ = [
     "SupportsSettings",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWindow",
     "Turn",
     "Variant",
     "Workload",
     "blaming",
     "is_role",
     "unit_of",
+    "window_of",
 ]

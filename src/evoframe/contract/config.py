@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 import attrs
@@ -22,6 +22,7 @@ from evoframe.contract.protocols import (
 from evoframe.documents import Tree, as_read, unstructure
 
 __all__ = [
+    "ADDED_LATER",
     "COMPONENTS",
     "POPULATION_COMPONENTS",
     "Chosen",
@@ -46,6 +47,12 @@ COMPONENTS: Mapping[str, str] = {
 
 POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "evolver"}
 """Key within a population -> kind of the component that it chooses."""
+
+
+ADDED_LATER: Mapping[str, bool] = {"evoframe.added_later": True}
+"""Metadata of an option that a component received after its first release: ``attrs.field(default=...,
+metadata=ADDED_LATER)``. While it has its default, it is left out of what determines a result, so that earlier
+runs, rows and champions remain valid."""
 
 
 @attrs.frozen(order=True)
@@ -158,11 +165,14 @@ class RunConfig:
 
     def tables(self) -> Tree:
         """Return the configuration as TOML tables that include every default."""
+        return self._tables(_table)
+
+    def _tables(self, table: Callable[[Chosen[Any]], Tree]) -> Tree:
         populations = {
             role: {
                 "size": population.size,
-                "encoder": _table(population.encoder),
-                "evolver": _table(population.evolver),
+                "encoder": table(population.encoder),
+                "evolver": table(population.evolver),
             }
             for role, population in self.populations.items()
         }
@@ -170,18 +180,18 @@ class RunConfig:
             "extends": False,
             "run": unstructure(self.run),
             "populations": populations,
-            **{key: _table(getattr(self, key)) for key in COMPONENTS},
+            **{key: table(getattr(self, key)) for key in COMPONENTS},
             "plugins": unstructure(self.plugins),
         }
 
     def deciding(self) -> Tree:
         """Return the tables that determine the result (all but the executor) as JSON values."""
-        kept = {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
-        return as_read(kept)
+        tables = self._tables(_deciding_table)
+        return as_read({key: table for key, table in tables.items() if key not in ("extends", "executor")})
 
     def simulation(self) -> Tree:
         """Return the tables that determine the simulation and the score of a design."""
-        return {key: _table(getattr(self, key)) for key in ("simulator", "objective")}
+        return {key: _deciding_table(getattr(self, key)) for key in ("simulator", "objective")}
 
     def to_toml(self) -> str:
         """Return the text of an equivalent TOML file."""
@@ -196,3 +206,14 @@ def is_role(name: str) -> bool:
 def _table(chosen: Chosen[Any]) -> Tree:
     options: Tree = unstructure(chosen.component)
     return {"name": chosen.name, **options}
+
+
+def _deciding_table(chosen: Chosen[Any]) -> Tree:
+    """Return the table of a component without options that were added later and have their default."""
+    later = [
+        field
+        for field in attrs.fields(type(chosen.component))
+        if ADDED_LATER.items() <= field.metadata.items()
+    ]
+    left_out = {field.name for field in later if getattr(chosen.component, field.name) == field.default}
+    return {key: value for key, value in _table(chosen).items() if key not in left_out}

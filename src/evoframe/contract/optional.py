@@ -13,17 +13,20 @@ from typing import Any, Protocol, runtime_checkable
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from evoframe.contract.drawings import Geometry, NetworkGraph
 from evoframe.contract.protocols import Aggregator, Encoder, Evolver, Objective, Simulator
 from evoframe.contract.values import Design, Export, Record
 
 __all__ = [
+    "SupportsDuration",
     "SupportsExemptions",
     "SupportsExport",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
+    "SupportsObjective",
     "SupportsOutputNames",
     "SupportsProvenance",
     "SupportsPublished",
@@ -32,8 +35,10 @@ __all__ = [
     "SupportsSettings",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWindow",
     "Variant",
     "unit_of",
+    "window_of",
 ]
 
 
@@ -78,6 +83,29 @@ class SupportsSettings(Simulator, Protocol):
         Raises:
             InputError: The file cannot be read.
         """
+
+
+@runtime_checkable
+class SupportsObjective(Simulator, Protocol):
+    """A simulator that suggests the objective for designs of files which contain settings."""
+
+    def objective_for(self, designs: Sequence[Design]) -> Mapping[str, Any]:
+        """Return the objective that fits *designs* with these settings: the table ``objective``.
+
+        It is used for files with settings (:class:`SupportsSettings`), which need not be experiments of a
+        preset, unless the user names an objective or a preset.
+
+        Returns:
+            The table as TOML values, with ``name``; its samples exist in every simulation of the designs.
+        """
+
+
+@runtime_checkable
+class SupportsDuration(Simulator, Protocol):
+    """A simulator that knows the simulated time in advance, for comparison with what the objective uses."""
+
+    def duration_of(self, design: Design) -> float:
+        """Return the time of the last step of a design's simulation, s; 0 if it cannot start."""
 
 
 @runtime_checkable
@@ -200,6 +228,32 @@ class SupportsUnit(Objective, Protocol):
     @property
     def unit(self) -> str:
         """Unit, such as ``m``."""
+
+
+@runtime_checkable
+class SupportsWindow(Objective, Protocol):
+    """An objective whose score does not depend on all samples of its record."""
+
+    def window(self, times: NDArray[np.float64]) -> tuple[float, float]:
+        """Return the first and the last time on which the score depends.
+
+        Args:
+            times: Times of the recorded samples, ``float64[samples]``, s, ascending; one or more.
+
+        Returns:
+            Two of the *times*.
+        """
+
+
+def window_of(objective: Objective, times: NDArray[np.float64]) -> tuple[float, float] | None:
+    """Return the first and the last of an outcome's *times* on which the score depends; ``None`` for none.
+
+    An objective that does not support :class:`SupportsWindow` uses all samples of its record.
+    """
+    if not len(times):
+        return None
+    first, last = objective.window(times) if isinstance(objective, SupportsWindow) else (times[0], times[-1])
+    return float(first), float(last)
 
 
 def unit_of(objective: Objective) -> str:

@@ -176,7 +176,8 @@ class Simulator(Protocol):
     outcome of a diverged simulation states the step of divergence.
 
     It may offer any of :class:`~evoframe.SupportsReading`,
-    :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsExport`,
+    :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsObjective`,
+    :class:`~evoframe.SupportsDuration`, :class:`~evoframe.SupportsExport`,
     :class:`~evoframe.SupportsVariants`, :class:`~evoframe.SupportsGeometry`,
     :class:`~evoframe.SupportsRandomControllers` and :class:`~evoframe.SupportsPublished`.
     """
@@ -210,7 +211,7 @@ class Objective(Protocol):
 
     Law: the score is finite for every outcome that did not diverge.
 
-    It may offer :class:`~evoframe.SupportsUnit`.
+    It may offer :class:`~evoframe.SupportsUnit` and :class:`~evoframe.SupportsWindow`.
     """
 
     @property

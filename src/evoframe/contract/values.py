@@ -150,10 +150,13 @@ class Score:
     Attributes:
         value: The score, in the objective's unit; ``None`` if the simulation diverged.
         diverged_at: Step at which the simulation diverged, or ``None``.
+        window: First and last simulated time on which the score depends, s; ``None`` if the simulation
+            diverged. Scores are compared without it.
     """
 
     value: float | None
     diverged_at: int | None = None
+    window: tuple[float, float] | None = attrs.field(default=None, eq=False, repr=False)
 
 
 @attrs.frozen

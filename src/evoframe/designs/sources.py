@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 import attrs
 
@@ -12,12 +13,21 @@ from evoframe.config import (
     Layer,
     Layers,
     layers_in,
-    load_config,
     named_simulator,
     read_layers,
     resolve_layers,
+    resolve_simulator,
 )
-from evoframe.contract import Design, RunConfig, SupportsReading, SupportsSettings
+from evoframe.contract import (
+    Design,
+    RunConfig,
+    Simulator,
+    SupportsObjective,
+    SupportsReading,
+    SupportsSettings,
+    blaming,
+)
+from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import is_directory
 from evoframe.record import CONFIG_FILE, Run, open_run, read_champion
@@ -27,6 +37,8 @@ __all__ = ["DEFAULT_PRESET", "Job", "naming", "read_job"]
 
 DEFAULT_PRESET = "paper"
 """The preset that provides the settings that a file lacks."""
+
+Overrides: TypeAlias = Sequence[str | Layer]
 
 
 @attrs.frozen
@@ -40,6 +52,8 @@ class Job:
         designs: The designs, in the order of the labels.
         run: The run, if the source is a run.
         score: Its score in the run, if the design is a champion simulated as in its run.
+        unscored: Reason why the simulations lack the samples that the objective requires, so that the designs
+            have no scores; empty if they have.
     """
 
     path: Path
@@ -48,13 +62,16 @@ class Job:
     designs: tuple[Design, ...]
     run: Run | None = None
     score: float | None = None
+    unscored: str = ""
 
 
 def read_job(
     source: Path | Run,
     preset: str | None,
-    overrides: Sequence[str | Layer],
+    overrides: Overrides,
     plugins: Plugins,
+    *,
+    scored: bool = True,
 ) -> Job:
     """Read the designs of a source, and determine the configuration with which they are simulated.
 
@@ -62,24 +79,30 @@ def read_job(
     read by the simulator, which returns their designs and settings; these settings override the preset
     (default: ``paper``). *overrides* have the highest precedence.
 
+    A file with settings of its own is not an experiment of the default preset, so it is not scored by the
+    objective of that preset, but by the one that the simulator suggests (:class:`SupportsObjective`), unless
+    *preset* is given or *overrides* name an objective.
+
     Args:
         source: A run or its directory, for its champion; a ``champion.json``; or a file in a format that
             the simulator reads.
         preset: Name of a preset, or path of a TOML file.
         overrides: ``key=value``, or layers, as for :func:`~evoframe.load_config`.
         plugins: The available plugins.
+        scored: Whether the designs must be scored. If not, simulations may lack the samples that the
+            objective requires, unless *overrides* set the objective; :attr:`Job.unscored` has the reason.
 
     Raises:
         InputError: The file cannot be read, or has an unexpected content.
         ConfigurationError: The configuration is invalid, or does not fit the designs.
     """
+    reader = _Reader(preset, overrides, plugins, scored or "objective" in _tree(overrides))
     if isinstance(source, Run):
-        return _of_run(source, preset, overrides, plugins)
+        return reader.of_run(source)
     if is_directory(source):
         with open_run(source) as run:
-            return _of_run(run, preset, overrides, plugins)
-    read = _of_champion if source.suffix == ".json" else _of_file
-    return read(source, preset, overrides, plugins)
+            return reader.of_run(run)
+    return reader.of_champion(source) if source.suffix == ".json" else reader.of_file(source)
 
 
 @contextlib.contextmanager
@@ -92,41 +115,68 @@ def naming(path: Path) -> Iterator[None]:
         raise
 
 
-def _of_run(run: Run, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    champion, path = run.champion(), run.directory
-    own = read_layers(preset) if preset else layers_in(run.config, str(path / CONFIG_FILE))
-    config = resolve_layers(own.under(overrides), Path(preset or CONFIG_FILE).stem, plugins)
-    _check_roles(path, champion.design, config)
-    score = champion.score if preset is None and _changes_nothing(own, overrides) else None
-    return Job(path, config, (str(path),), (champion.design,), run, score)
+@attrs.frozen
+class _Reader:
+    """Reader of one source; the fields are the arguments of :func:`read_job`."""
+
+    preset: str | None
+    overrides: Overrides
+    plugins: Plugins
+    scored: bool
+
+    def of_run(self, run: Run) -> Job:
+        champion, path = run.champion(), run.directory
+        own = read_layers(self.preset) if self.preset else layers_in(run.config, str(path / CONFIG_FILE))
+        job = self._job(path, own, CONFIG_FILE, [(str(path), champion.design)])
+        return attrs.evolve(_checked(job), run=run, score=self._score(champion.score, own))
+
+    def of_champion(self, path: Path) -> Job:
+        champion = read_champion(path)
+        own = read_layers(self.preset or DEFAULT_PRESET)
+        if self.preset is None:
+            own = own.under([Layer(str(path), champion.simulation)])
+        job = self._job(path, own, DEFAULT_PRESET, [(path.name, champion.design)])
+        return attrs.evolve(_checked(job), score=self._score(champion.score, own))
+
+    def of_file(self, path: Path) -> Job:
+        source = self.preset or DEFAULT_PRESET
+        settings = _settings_of(path, source, self.overrides, self.plugins)
+        own = read_layers(source).under(settings)
+        chosen = resolve_simulator(own.under(self.overrides), self.plugins)
+        if chosen is None or not isinstance(chosen.component, SupportsReading):
+            config = self._config(own, DEFAULT_PRESET)  # faults of the settings come first
+            problem = f"'{config.simulator.name}' cannot read files with designs"
+            raise ConfigurationError(problem, source=path, key="simulator")
+        labelled = chosen.component.read(path)
+        if settings and self.preset is None and not _names_objective(self.overrides):
+            own = own.under(_suggested(path, chosen.component, [design for _, design in labelled]))
+        return self._job(path, own, DEFAULT_PRESET, labelled)
+
+    def _job(self, path: Path, own: Layers, base: str, labelled: Sequence[tuple[str, Design]]) -> Job:
+        config = self._config(own, base)
+        labels, designs = zip(*labelled, strict=True)
+        return Job(path, config, labels, designs, unscored="" if self.scored else _unscored(config))
+
+    def _config(self, own: Layers, base: str) -> RunConfig:
+        label = Path(self.preset or base).stem
+        return resolve_layers(own.under(self.overrides), label, self.plugins, scored=self.scored)
+
+    def _score(self, score: float, own: Layers) -> float | None:
+        """Return the score of a champion in its run, if it is simulated and scored as there."""
+        return score if self.preset is None and _changes_nothing(own, self.overrides) else None
 
 
-def _of_champion(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    champion = read_champion(path)
-    own = (
-        read_layers(preset)
-        if preset
-        else read_layers(DEFAULT_PRESET, [Layer(str(path), champion.simulation)])
-    )
-    config = resolve_layers(own.under(overrides), Path(preset or DEFAULT_PRESET).stem, plugins)
-    _check_roles(path, champion.design, config)
-    score = champion.score if preset is None and _changes_nothing(own, overrides) else None
-    return Job(path, config, (path.name,), (champion.design,), score=score)
+def _tree(overrides: Overrides) -> Tree:
+    return Layers(()).under(overrides).merged()
 
 
-def _of_file(path: Path, preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> Job:
-    source = preset or DEFAULT_PRESET
-    own = _settings_of(path, source, overrides, plugins)
-    config = load_config(source, overrides=[*own, *overrides], plugins=plugins)
-    simulator = config.simulator.component
-    if not isinstance(simulator, SupportsReading):
-        problem = f"'{config.simulator.name}' cannot read files with designs"
-        raise ConfigurationError(problem, source=path, key="simulator")
-    labels, designs = zip(*simulator.read(path), strict=True)
-    return Job(path, config, labels, designs)
+def _names_objective(overrides: Overrides) -> bool:
+    """Return whether *overrides* choose an objective, not only set options of the one chosen otherwise."""
+    table = _tree(overrides).get("objective")
+    return table is not None and not (isinstance(table, Mapping) and "name" not in table)
 
 
-def _settings_of(path: Path, source: str, overrides: Sequence[str | Layer], plugins: Plugins) -> list[Layer]:
+def _settings_of(path: Path, source: str, overrides: Overrides, plugins: Plugins) -> list[Layer]:
     """Return the settings in a file as a layer, if it has any."""
     simulator = named_simulator(source, overrides, plugins)
     if simulator is None or not isinstance(simulator.component, SupportsSettings):
@@ -135,13 +185,33 @@ def _settings_of(path: Path, source: str, overrides: Sequence[str | Layer], plug
     return [] if settings is None else [Layer(str(path), {"simulator": {"name": simulator.name, **settings}})]
 
 
-def _check_roles(path: Path, design: Design, config: RunConfig) -> None:
-    missing = [role for role in config.simulator.component.requires if role not in design.roles]
+def _suggested(path: Path, simulator: Simulator, designs: Sequence[Design]) -> list[Layer]:
+    """Return the objective that a simulator suggests as a layer, if it suggests any."""
+    if not isinstance(simulator, SupportsObjective):
+        return []
+    with naming(path), blaming("simulator"):
+        return [Layer(str(path), {"objective": dict(simulator.objective_for(designs))})]
+
+
+def _unscored(config: RunConfig) -> str:
+    """Return why simulations lack samples of the objective; empty if they have all."""
+    try:
+        config.simulator.component.check(config.objective.component.record)
+    except ConfigurationError as error:
+        return error.problem
+    return ""
+
+
+def _checked(job: Job) -> Job:
+    """Return the job of a champion, which must have the roles that the simulator requires."""
+    [design], required = job.designs, job.config.simulator.component.requires
+    missing = [role for role in required if role not in design.roles]
     if missing:
-        raise InputError(f"missing {' and '.join(missing)}", source=path, key="design")
+        raise InputError(f"missing {' and '.join(missing)}", source=job.path, key="design")
+    return job
 
 
-def _changes_nothing(own: Layers, overrides: Sequence[str | Layer]) -> bool:
+def _changes_nothing(own: Layers, overrides: Overrides) -> bool:
     """Return ``True`` if *overrides* change neither simulator nor objective."""
     alone, together = own.merged(), own.under(overrides).merged()
     return all(alone.get(key) == together.get(key) for key in ("simulator", "objective"))

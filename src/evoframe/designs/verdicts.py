@@ -7,15 +7,15 @@ from evoframe.record import Verification
 
 __all__ = ["verdict"]
 
-_KEPT = 0.9
+_KEPT = (0.9, 1.1)
 _LOST = 0.5
 
 
 def verdict(verification: Verification, config: RunConfig, design: Design) -> str:
     """Return what the findings mean for the score, in the words of the simulator.
 
-    A variant that keeps at least 90 % or at most 50 % of the score contributes its clause; any other variant
-    contributes its name. Both are followed by the share of the score that is left.
+    A variant with 90 to 110 % of the score, or at most 50 %, contributes its clause, any other one its name.
+    Both are followed by the share of the score that is left.
 
     Args:
         verification: The verification of *design*.
@@ -50,6 +50,6 @@ def _listed(clauses: list[str]) -> str:
 
 
 def _clause(share: float, kept: str, lost: str) -> str:
-    if share >= _KEPT:
+    if _KEPT[0] <= share <= _KEPT[1]:
         return kept
     return lost if share <= _LOST else ""

@@ -40,7 +40,8 @@ def verify(
 
     Args:
         source: A run or its directory, for its champion; or a file with designs.
-        preset: The preset for settings that the file lacks; for a champion, it replaces the run's settings.
+        preset: The preset for settings that the file lacks, and for the objective, which otherwise depends on
+            what a file with settings contains; for a champion, it replaces the run's settings.
         workers: Overrides ``executor.workers``.
         plugins: The available plugins; by default all installed plugins.
         **settings: Further settings by key, as for :func:`evoframe.runs.execution`.
@@ -53,7 +54,7 @@ def verify(
         InputError: The file or directory cannot be read, or has an unexpected content.
         RunError: The verification fails or cannot be written.
     """
-    overrides = layers_of({**settings, "executor.workers": workers})
+    overrides = layers_of(settings, {"executor.workers": workers})
     named = source if isinstance(source, Run) else Path(source)
     job = read_job(named, preset, overrides, plugins or discover())
     verifications = verify_job(job)

@@ -10,7 +10,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import attrs
 import numpy as np
 
-from evoframe.contract import Design, ExecutorRun, Objective, Outcome, Record, Score, Simulator, blaming
+from evoframe.contract import (
+    Design,
+    ExecutorRun,
+    Objective,
+    Outcome,
+    Record,
+    Score,
+    Simulator,
+    blaming,
+    window_of,
+)
 from evoframe.errors import ComponentError, WorkerError
 
 __all__ = ["Evaluator", "score_designs"]
@@ -148,10 +158,11 @@ def _score(outcome: Outcome, record: Record, objective: Objective) -> Score:
     _refuse_tracks(outcome, record)
     with blaming("objective"):
         score = objective.score(outcome)
+        window = window_of(objective, outcome.times)
     if not isinstance(score, numbers.Real) or not math.isfinite(score):
         problem = f"returned the score {score!r}, expected a finite number"
         raise ComponentError("objective", problem)
-    return Score(float(score))
+    return Score(float(score), window=window)
 
 
 def _refuse_tracks(outcome: Outcome, record: Record) -> None:

@@ -2,7 +2,7 @@
 
 from evoframe.record.champion import Champion, design_from_json, read_champion
 from evoframe.record.checksums import CHAINED, SINGLE
-from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE
+from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, RECORD_FILES
 from evoframe.record.provenance import provenance_of
 from evoframe.record.run import Report, Run, load_run, open_run, open_unchecked
 from evoframe.record.store import Store
@@ -12,6 +12,7 @@ __all__ = [
     "CHAINED",
     "CHAMPION_FILE",
     "CONFIG_FILE",
+    "RECORD_FILES",
     "SINGLE",
     "UNCHANGED",
     "Champion",

@@ -8,6 +8,7 @@ __all__ = [
     "CHAMPION_FILE",
     "CONFIG_FILE",
     "DATABASE_FILE",
+    "RECORD_FILES",
     "RUN_FORMAT",
     "SETTLED",
     "VERIFICATION_FILE",
@@ -26,6 +27,9 @@ SETTLED = frozenset({"format", "configuration"})
 
 VERIFICATION_FILE = "verification.json"
 """Verification of the champion."""
+
+RECORD_FILES = (CONFIG_FILE, DATABASE_FILE, f"{DATABASE_FILE}-journal", CHAMPION_FILE, VERIFICATION_FILE)
+"""The files that contain the data of a run."""
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;

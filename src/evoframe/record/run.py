@@ -159,10 +159,12 @@ class Run:
             raise InputError(f"{found}; {hint}", source=path, key="score")
         return verification
 
-    def report(self, out: str | Path | None = None, *, correction: str = "holm") -> Report:
+    def report(
+        self, out: str | Path | None = None, *, correction: str = "holm", force: bool = False
+    ) -> Report:
         """Write the report of this run: see :func:`evoframe.report`."""
         public = importlib.import_module("evoframe")  # late, because reports depend on this module
-        report: Report = public.report(self, out=out, correction=correction)
+        report: Report = public.report(self, out=out, correction=correction, force=force)
         return report
 
     def check(self) -> None:

@@ -1,7 +1,7 @@
 """Robustness of bodies: their scores with the same random controllers."""
 
-from evoframe.robustness.api import measurable, measure, measure_robustness, setting_of
-from evoframe.robustness.candidates import read_candidates
+from evoframe.robustness.api import first_simulation, measurable, measure, measure_robustness, setting_of
+from evoframe.robustness.candidates import Candidates, read_candidates
 from evoframe.robustness.files import (
     SETTING_FILE,
     document_of,
@@ -14,10 +14,12 @@ from evoframe.robustness.measurement import Body, Divergence, Robustness, Settin
 __all__ = [
     "SETTING_FILE",
     "Body",
+    "Candidates",
     "Divergence",
     "Robustness",
     "Setting",
     "document_of",
+    "first_simulation",
     "measurable",
     "measure",
     "measure_robustness",

@@ -9,15 +9,23 @@ from typing import Any
 import attrs
 
 from evoframe.config import layers_of
-from evoframe.contract import SupportsRandomControllers, unit_of
+from evoframe.contract import Design, Score, SupportsRandomControllers, unit_of
 from evoframe.documents import as_read
 from evoframe.errors import ConfigurationError
+from evoframe.evolution import score_designs
 from evoframe.record import Run
 from evoframe.registry import Plugins, discover
 from evoframe.robustness.candidates import Candidates, champions, read_candidates
-from evoframe.robustness.measurement import Bench, Body, Robustness, Setting, digest_of
+from evoframe.robustness.measurement import Bench, Body, Robustness, Setting, digest_of, draw_controller
 
-__all__ = ["Measurable", "measurable", "measure", "measure_robustness", "setting_of"]
+__all__ = [
+    "Measurable",
+    "first_simulation",
+    "measurable",
+    "measure",
+    "measure_robustness",
+    "setting_of",
+]
 
 
 def measure_robustness(  # noqa: PLR0913 - the options of the command
@@ -51,7 +59,7 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
         RunError: The measurement failed.
     """
     paths = [source.directory if isinstance(source, Run) else Path(source) for source in sources]
-    overrides = layers_of({**settings, "executor.workers": workers})
+    overrides = layers_of(settings, {"executor.workers": workers})
     candidates = read_candidates(paths, preset, overrides, plugins or discover(), published=published)
     return measure(candidates, setting_of(candidates, seed, controllers))
 
@@ -104,6 +112,19 @@ def setting_of(candidates: Candidates, seed: int, controllers: int) -> Setting:
         raise ConfigurationError(
             f"expected controllers >= 1 and seed >= 0, found {controllers!r} and {seed!r}"
         ) from error
+
+
+def first_simulation(candidates: Candidates, setting: Setting) -> tuple[Design, Score]:
+    """Return the first body with the first controller, and its score.
+
+    Raises:
+        InputError: The simulator cannot simulate the body.
+        RunError: The simulator or the objective fails.
+    """
+    simulator, objective = _simulator(candidates), candidates.config.objective.component
+    design = draw_controller(simulator, candidates.bodies[0].design, setting.seed, 0)
+    [score] = score_designs(simulator, [design], objective.record, objective)
+    return design, score
 
 
 def measure(

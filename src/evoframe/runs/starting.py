@@ -55,7 +55,7 @@ def run(
     """
     plugins = plugins or discover()
     if not isinstance(config, RunConfig):
-        overrides = layers_of({**settings, "run.seed": seed, "executor.workers": workers})
+        overrides = layers_of(settings, {"run.seed": seed, "executor.workers": workers})
         config = load_config(config, overrides=overrides, plugins=plugins)
     elif settings or seed is not None or workers is not None:
         raise TypeError("a RunConfig is complete; pass settings to load_config instead")

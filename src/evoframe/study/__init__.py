@@ -4,7 +4,7 @@ from evoframe.study.api import StudyPlan, StudyResult, plan_study, run_study
 from evoframe.study.conduct import STUDY_FILE, Watcher, claim, survey
 from evoframe.study.directory import is_study, runs_in
 from evoframe.study.estimate import Estimate
-from evoframe.study.gathered import IMPORTED, gather, imported_rows
+from evoframe.study.gathered import IMPORTED, TABLES, gather, imported_rows
 from evoframe.study.names import called, headings, name_of, title_of
 from evoframe.study.plan import Cell, Planned, Study, describes_study, read_study, shown, study_names
 from evoframe.study.pool import End
@@ -16,6 +16,7 @@ __all__ = [
     "IMPORTED",
     "ROWS_FILE",
     "STUDY_FILE",
+    "TABLES",
     "Cell",
     "End",
     "Estimate",

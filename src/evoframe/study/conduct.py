@@ -70,7 +70,16 @@ def claim(study: Study, directory: Path) -> None:
     refuse_another(study, directory)  # before the lock, which writes to the directory
     with lock_tables(directory):
         refuse_another(study, directory)  # again: another process may have been faster
-        write_atomically(directory / STUDY_FILE, tomli_w.dumps(_tables(study)).encode())
+        _renew(directory / STUDY_FILE, tomli_w.dumps(_tables(study)))
+
+
+def _renew(path: Path, text: str) -> None:
+    """Write the file of a study, unless it has the same values, so that its comments and order are kept."""
+    if path.is_file():
+        there = parsed_toml(read_text(path, LARGEST_DOCUMENT), str(path))
+        if there == parsed_toml(text, str(path)):
+            return
+    write_atomically(path, text.encode())
 
 
 def lock_tables(directory: Path) -> contextlib.AbstractContextManager[None]:

@@ -8,11 +8,12 @@ from typing import TypeAlias
 
 from evoframe.errors import InputError
 from evoframe.record import open_run
+from evoframe.study.conduct import STUDY_FILE
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.progress import Status, with_remedy
-from evoframe.study.rows import ROWS_FILE, Row, digest, read_rows, row_of, write_rows
+from evoframe.study.rows import CURVES_FILE, ROWS_FILE, Row, digest, read_rows, row_of, write_rows
 
-__all__ = ["IMPORTED", "gather", "import_rows", "imported_rows"]
+__all__ = ["IMPORTED", "TABLES", "gather", "import_rows", "imported_rows"]
 
 _REPEATABLE = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # equal on every machine
 
@@ -20,6 +21,12 @@ _Key: TypeAlias = tuple[frozenset[tuple[str, str]], int]  # settings and number 
 
 IMPORTED = "imported"
 """Folder in the directory of a study that holds the imported rows."""
+
+TABLES = (
+    STUDY_FILE,
+    *(f"{folder}{name}" for folder in ("", f"{IMPORTED}/") for name in (ROWS_FILE, CURVES_FILE)),
+)
+"""The files that contain the data of a study, apart from its runs."""
 
 
 def import_rows(study: Study, directory: Path, paths: Iterable[Path]) -> dict[Planned, Row]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.contract import Objective, Outcome, Record
+from evoframe.contract import Objective, Outcome, Record, window_of
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, same_outcome
 
@@ -54,6 +54,32 @@ class ObjectiveContract(ComponentContract[Objective]):
         def law(outcome: Outcome) -> None:
             first, second = self.component.score(outcome), self.component.score(outcome)
             assert first.hex() == second.hex(), f"the same outcome scores {first}, then {second}"
+
+        for_all(law, outcome=self.outcomes())
+
+    def test_the_window_consists_of_two_samples(self) -> None:
+        """The first and last time on which the score depends are times of samples, in order."""
+
+        def law(outcome: Outcome) -> None:
+            window = window_of(self.component, outcome.times)
+            assert window is not None, "expected two times, found none"
+            first, last = window
+            assert {first, last} <= set(outcome.times.tolist()), f"expected times of samples, found {window}"
+            assert first <= last, f"expected the first time before the last, found {window}"
+
+        for_all(law, outcome=self.outcomes())
+
+    def test_samples_outside_the_window_do_not_matter(self) -> None:
+        """The score stays the same, to the last bit, if positions outside of the window change."""
+
+        def law(outcome: Outcome) -> None:
+            window = window_of(self.component, outcome.times)
+            assert window is not None, "expected two times, found none"
+            outside = (outcome.times < window[0]) | (outcome.times > window[1])
+            moved = {name: track + outside[:, None] for name, track in outcome.tracks.items()}
+            changed = Outcome(outcome.steps, outcome.times, moved)
+            first, second = self.component.score(outcome), self.component.score(changed)
+            assert first.hex() == second.hex(), f"the score depends on samples outside of {window} s"
 
         for_all(law, outcome=self.outcomes())
 

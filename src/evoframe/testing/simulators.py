@@ -17,8 +17,10 @@ from evoframe.contract import (
     Outcome,
     Record,
     Simulator,
+    SupportsDuration,
     SupportsExport,
     SupportsGeometry,
+    SupportsObjective,
     SupportsPublished,
     SupportsRandomControllers,
     SupportsVariants,
@@ -36,8 +38,8 @@ class SimulatorContract(ComponentContract[Simulator]):
     """The laws of a :class:`~evoframe.Simulator`.
 
     Override :meth:`designs`, and :meth:`diverging` if a simulation can diverge. A simulation that diverges at
-    step 0 has not started, and may have no samples. Optional capabilities (variants, formats, geometries,
-    random controllers, published bodies) are tested if the simulator has them.
+    step 0 has not started, and may have no samples. Optional capabilities (duration, suggested objective,
+    variants, formats, geometries, random controllers, published bodies) are tested if the simulator has them.
     """
 
     protocol = Simulator
@@ -251,6 +253,26 @@ class SimulatorContract(ComponentContract[Simulator]):
                 assert same_outcome(first, outcome), (
                     "two outcomes with the same key differ; the key must contain everything that affects them"
                 )
+
+    def test_the_duration_is_the_time_of_the_last_step(self) -> None:
+        """``duration_of`` is the time of the last sample if every step is sampled, to the last bit."""
+        if not isinstance(self.component, SupportsDuration):
+            return
+        every_step = Record(tuple(self.component.tracks))
+        for design, outcome in zip(self._all(), self._simulate(self._all(), every_step), strict=True):
+            duration = self.component.duration_of(design)
+            assert isinstance(duration, float), f"expected a float, found {type(duration).__name__}"
+            last = float(outcome.times[-1]) if len(outcome.times) else 0.0
+            assert duration == last, f"expected the time of the last step, {last} s, found {duration} s"
+
+    def test_the_suggested_objective_is_a_table_with_a_name(self) -> None:
+        """``objective_for`` returns the same table every time, with the name of an objective."""
+        if not isinstance(self.component, SupportsObjective):
+            return
+        first, second = (self.component.objective_for(self.designs()) for _ in range(2))
+        name = first.get("name")
+        assert isinstance(name, str), f"expected a table with the name of an objective, found {name!r}"
+        assert first == second, "objective_for() returns different objectives for the same designs"
 
     def test_variants_are_scored_by_the_same_objective(self) -> None:
         """A variant has a name, and the tracks and number of samples of the unchanged simulation."""

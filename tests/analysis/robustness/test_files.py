@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from measuring import measure
 
+from evoframe import InputError
 from evoframe.analysis.robustness import as_json, conclusions, find, records, write_findings, write_robustness
 
 
@@ -51,3 +52,22 @@ def test_files_are_in_millimeters_and_json_in_meters(tmp_path: Path) -> None:
 def test_missing_values_are_none() -> None:
     table = pd.DataFrame({"a": [1.5, float("nan")], "b": ["x", None]})
     assert records(table) == [{"a": 1.5, "b": "x"}, {"a": None, "b": None}]
+
+
+def test_only_a_measurement_of_the_same_setting_is_overwritten_unasked(tmp_path: Path) -> None:
+    found = find(measure([1.0, 2.0], 10))
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "groups.csv").write_text("mine")
+    with pytest.raises(InputError) as caught:
+        write_robustness(found, tmp_path / "mine")
+    assert caught.value.source == str(tmp_path / "mine")
+    assert [path.read_text() for path in (tmp_path / "mine").iterdir()] == ["mine"]
+    for _ in range(2):
+        write_robustness(found, tmp_path / "r")
+    before = (tmp_path / "r" / "scores.csv").read_bytes()
+    other = find(measure([1.0, 2.0], 11))
+    with pytest.raises(InputError):
+        write_robustness(other, tmp_path / "r")
+    assert (tmp_path / "r" / "scores.csv").read_bytes() == before
+    write_robustness(other, tmp_path / "r", force=True)
+    assert (tmp_path / "r" / "scores.csv").read_bytes() != before

@@ -65,6 +65,10 @@ class TestTravelOf:
         assert Travel(along=along, after=2 * STEP).score(outcome) == score
         assert Travel(along=along, after=1.5 * STEP).score(outcome) == score
 
+    @pytest.mark.parametrize(("after", "first"), [(0.0, 1), (1.5 * STEP, 2), (4 * STEP, 4)])
+    def test_its_window_starts_with_the_first_sample_that_counts(self, after: float, first: int) -> None:
+        assert Travel(after=after).window(recorded("body", WALK).times) == (first * STEP, 4 * STEP)
+
     def test_a_sample_that_rounding_puts_just_before_the_time_counts(self) -> None:
         outcome = recorded("body", WALK)
         early = Outcome(outcome.steps, outcome.times * (1 - 1e-15), outcome.tracks)

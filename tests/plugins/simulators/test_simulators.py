@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from evoframe import (
+    SupportsDuration,
     SupportsExport,
     SupportsGeometry,
+    SupportsObjective,
     SupportsProvenance,
     SupportsPublished,
     SupportsRandomControllers,
@@ -24,8 +26,10 @@ def test_vox_is_offered_by_name() -> None:
 @pytest.mark.parametrize(
     "capability",
     [
+        SupportsDuration,
         SupportsExport,
         SupportsGeometry,
+        SupportsObjective,
         SupportsProvenance,
         SupportsPublished,
         SupportsRandomControllers,

@@ -23,7 +23,7 @@ class PaletteMaterial:
     Attributes:
         code: Value of its cells in a body, 1 to 255; 0 is an empty cell.
         youngs_modulus: Young's modulus, Pa.
-        poisson_ratio: Poisson's ratio, at least 0 and below 0.5; it affects only the twist of bonds.
+        poisson_ratio: Poisson's ratio, 0 to 0.5; it affects only the twist of bonds.
         density: Density, kg/m3.
         expansion_coefficient: Linear thermal expansion, 1/degree; 0 is passive, and negative coefficients
             contract when positive ones expand.

@@ -9,7 +9,7 @@ import attrs
 from attrs import validators
 from numpy.typing import NDArray
 
-from evoframe import CONTRACTILE, CONTROLLER, PASSIVE, Design
+from evoframe import ADDED_LATER, CONTRACTILE, CONTROLLER, PASSIVE, Design
 from evoframe_simulators.vox.limits import MOST_STEPS, VALID_PROPERTY, VALID_SETTING
 from evoframe_simulators.vox.materials import PaletteMaterial, check_palette, round_to_single
 from evoframe_simulators.vox.regions import FixedRegion
@@ -49,10 +49,19 @@ class VoxSettings:
             the paper's text.
         start_time: Time at which the contraction starts, s; its phase still runs from time 0.
         ramp: Time over which the contraction reaches its full amplitude, s.
+        smallest_size: Smallest size of a voxel, as a multiple of its edge.
+        largest_size: Largest size of a voxel, as a multiple of its edge.
+        size_rule: Size of a voxel that would pass a limit: ``hold`` keeps its last value, as in the paper's
+            engine; ``clamp`` gives it the limit.
         gravity: Acceleration along z, m/s2; negative is down.
         floor: Whether to add a floor at z = 0.
         floor_slope: Slope of the floor z = x tan(slope), degrees; its normal force remains vertical.
+        falling_code: Material code whose contact with the plane z = 0 (or the sloped floor) ends the motion
+            of a body, also without a floor; samples after that repeat its state. 0: none.
         fluid_drag: Half the density of the surrounding fluid times the drag coefficient, kg/m3.
+        fluid_surface: Surface on which the fluid acts: ``bond-strain`` is that of the paper's engine, where a
+            voxel reaches half an edge plus the strain of the bond on that side; with ``voxel-size``, it
+            reaches half its size, and only the outer surface counts (docs/physics.md, section 7).
         fixed: Boxes whose voxels are clamped: tables with ``origin`` and ``size``, fractions of the canvas,
             and ``degrees_of_freedom``, a list from x, y, z, rx, ry, rz. Empty: the body is free.
         self_collision: Whether voxels that are not neighbors repel each other.
@@ -89,10 +98,21 @@ class VoxSettings:
     phase_unit: Literal["cycles", "radians"] = "cycles"
     start_time: float = attrs.field(default=0.0, validator=VALID_SETTING["start_time"])
     ramp: float = attrs.field(default=0.0, validator=VALID_SETTING["ramp"])
+    smallest_size: float = attrs.field(
+        default=0.1, validator=VALID_SETTING["smallest_size"], metadata=ADDED_LATER
+    )
+    largest_size: float = attrs.field(
+        default=3.0, validator=VALID_SETTING["largest_size"], metadata=ADDED_LATER
+    )
+    size_rule: Literal["hold", "clamp"] = attrs.field(default="hold", metadata=ADDED_LATER)
     gravity: float = attrs.field(default=0.0, validator=VALID_SETTING["gravity"])
     floor: bool = False
     floor_slope: float = attrs.field(default=0.0, validator=VALID_SETTING["floor_slope"])
+    falling_code: int = attrs.field(default=0, validator=VALID_SETTING["falling_code"], metadata=ADDED_LATER)
     fluid_drag: float = attrs.field(default=0.0, validator=VALID_SETTING["fluid_drag"])
+    fluid_surface: Literal["bond-strain", "voxel-size"] = attrs.field(
+        default="bond-strain", metadata=ADDED_LATER
+    )
     fixed: tuple[FixedRegion, ...] = (FixedRegion(),)
     self_collision: bool = True
     collision_envelope: float = attrs.field(default=1.5, validator=VALID_SETTING["collision_envelope"])

@@ -28,7 +28,14 @@ from evoframe import (
 from evoframe_simulators.files import naming_source
 from evoframe_simulators.vox.bodies import check_codes, check_design, read_bodies
 from evoframe_simulators.vox.geometry import geometry_of
-from evoframe_simulators.vox.models import acting_codes, model_of, possible_clocks, strip_body_index
+from evoframe_simulators.vox.models import (
+    acting_codes,
+    clock_of,
+    model_of,
+    possible_clocks,
+    strip_body_index,
+)
+from evoframe_simulators.vox.objectives import objective_of
 from evoframe_simulators.vox.published import published_bodies
 from evoframe_simulators.vox.sampling import check_samples
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
@@ -89,6 +96,32 @@ class Vox(VoxSettings):
             InputError: A design is not a body with a controller, or its record would be too large.
         """
         return simulate(self, designs, record)
+
+    def duration_of(self, design: Design) -> float:
+        """Return the time of the last step of a body, s; 0 without voxels.
+
+        Raises:
+            InputError: The design is not a body with a controller, or cannot be simulated.
+        """
+        check_design(design)
+        material = design.roles[MORPHOLOGY]
+        if not material.any():
+            return 0.0
+        try:
+            clock = clock_of(self, material)
+        except ValueError as error:  # the solver rejects the values of cells
+            raise InputError(strip_body_index(error)) from error
+        return clock.last(Record(()))
+
+    def objective_for(self, designs: Sequence[Design]) -> dict[str, Any]:
+        """Return the objective that fits bodies with these settings (see :mod:`.objectives`).
+
+        Raises:
+            InputError: A design is not a body with a controller.
+        """
+        for design in designs:
+            check_design(design)
+        return objective_of(self, (design.roles[MORPHOLOGY] for design in designs))
 
     def variants(self, design: Design, record: Record) -> list[Variant]:
         """Return the variants to which ``evoframe verify`` compares a design (see :mod:`.verification`).

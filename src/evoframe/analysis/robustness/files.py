@@ -24,25 +24,28 @@ from evoframe.analysis.robustness.tables import (
     ranking_table,
 )
 from evoframe.analysis.robustness.words import conclusions
-from evoframe.robustness import document_of, write_measurement
+from evoframe.robustness import document_of, refuse_another, write_measurement
 
 __all__ = ["as_json", "records", "write_findings", "write_robustness"]
 
 
-def write_robustness(found: Findings, directory: str | Path) -> list[Path]:
+def write_robustness(found: Findings, directory: str | Path, *, force: bool = False) -> list[Path]:
     """Write a measurement, its figure, tables and conclusions.
 
     Args:
         found: The measurement and its tests.
-        directory: Directory of the files; those of an earlier measurement are overwritten.
+        directory: Directory of the files: missing, empty, or with a measurement of the same setting, which is
+            renewed.
+        force: Whether to overwrite a measurement with another setting.
 
     Returns:
         The paths of the files.
 
     Raises:
-        InputError: The directory cannot be created, or is not writable.
+        InputError: The directory contains something else, cannot be created, or is not writable.
         RunError: A file cannot be written.
     """
+    refuse_another(Path(directory), found.measured.setting, force=force)
     directory = prepare_directory(Path(directory))
     return [*write_measurement(found.measured, directory), *write_findings(found, directory)]
 

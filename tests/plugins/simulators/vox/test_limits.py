@@ -22,6 +22,7 @@ PROPERTIES = (
 SETTINGS = (
     *("duration", "voxel_size", "time_step_fraction", "substeps", "step_limit"),
     *("start_time", "ramp", "gravity", "floor_slope", "fluid_drag"),
+    *("smallest_size", "largest_size", "falling_code"),
     *("collision_envelope", "collision_horizon", "collision_damping", "contact_damping"),
     *("bond_damping", "slow_damping", "largest_strain", "largest_distance"),
 )
@@ -64,7 +65,7 @@ def test_a_value_is_accepted_if_and_only_if_it_is_in_the_range(
         (limits.VALID_SETTING["duration"], [5e-324, 1e9], [0.0, -1.0, np.nan, 1.1e9]),
         (limits.VALID_SETTING["fluid_drag"], [0.0, 1e308], [-5e-324, np.nan, np.inf]),
         (limits.VALID_SETTING["step_limit"], [1, 2**60], [0, 1.5]),
-        (limits.VALID_PROPERTY["poisson_ratio"], [0.0, 0.4999], [-1e-9, 0.5, np.nan]),
+        (limits.VALID_PROPERTY["poisson_ratio"], [0.0, 0.5], [-1e-9, 0.501, np.nan]),
         (limits.check_finite, [(0.0, 1e308)], [(np.inf,), (0.0, np.nan)]),
         (limits.check_distinct, [(), ("x", "y")], [("x", "y", "x")]),
         (limits.check_printable, ["", "Größe é"], ["a\nb", "\x07"]),

@@ -32,6 +32,11 @@ _PASSIVE, _EXPANDING, _CONTRACTING = (0.0, 0.6, 0.8), (0.8, 0.2, 0.0), (0.0, 0.6
 # Options without a tag in the format: name, description, and whether the option affects only contacts.
 _WITHOUT_TAG = (
     ("ramp", "the ramp at the start of the contraction", False),
+    ("smallest_size", "the smallest size of voxels", False),
+    ("largest_size", "the largest size of voxels", False),
+    ("size_rule", "the rule for sizes beyond a limit", False),
+    ("falling_code", "the material whose contact with the floor ends the motion", False),
+    ("fluid_surface", "the surface on which the fluid acts", False),
     ("substeps", "the substeps of time steps", False),
     ("collision_envelope", "the distance at which contacts start", True),
     ("contact_damping", "the damping of contacts", True),

@@ -44,10 +44,10 @@ NEEDED = (
 OUT_OF_RANGE = (
     *(("Lattice_Dim", "-0.05"), ("Lattice_Dim", "0"), ("Lattice_Dim", "1e9"), ("Lattice_Dim", "1e-9")),
     *(("DtFrac", "0"), ("DtFrac", "1.5"), ("SlowDampingZ", "-1"), ("CollisionHorizon", "0")),
-    *(("CollisionHorizon", "9"), ("StopConditionValue", "0"), ("StopConditionValue", "1e300")),
+    *(("CollisionHorizon", "11"), ("StopConditionValue", "0"), ("StopConditionValue", "1e300")),
     *(("StopConditionValue", "1e9"), ("InitCmTime", "-1"), ("TempPeriod", "0"), ("TempPeriod", "1e-300")),
     *(("TempAmp", "1e300"), ("Elastic_Mod", "0"), ("Elastic_Mod", "1e300"), ("Density", "-1e6")),
-    *(("Density", "1e-300"), ("Poissons_Ratio", "0.5"), ("Poissons_Ratio", "-1"), ("uDynamic", "-0.5")),
+    *(("Density", "1e-300"), ("Poissons_Ratio", "0.6"), ("Poissons_Ratio", "-1"), ("uDynamic", "-0.5")),
     *(("CTE", "1e308"), ("dX", "-0.01"), ("dZ", "-1"), ("DofFixed", "64"), ("DofFixed", "-1")),
     *(("DofFixed", "1.5"), ("PrimType", "9"), ("NumBCs", "0"), ("NumBCs", "2"), ("NumBCs", "-1")),
     *(("NumBCs", "1e9"), ("SelfColEnabled", "2"), ("ColSystem", "4"), ("StopConditionType", "7")),

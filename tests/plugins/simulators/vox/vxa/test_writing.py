@@ -132,6 +132,11 @@ class TestLeftOut:
         [
             ("ramp", 0.5, "ramp = 0.5"),
             ("substeps", 2, "substeps = 2"),
+            ("smallest_size", 0.5, "smallest_size = 0.5"),
+            ("largest_size", 1.0, "largest_size = 1.0"),
+            ("size_rule", "clamp", "size_rule = clamp"),
+            ("falling_code", 1, "falling_code = 1"),
+            ("fluid_surface", "voxel-size", "fluid_surface = voxel-size"),
             ("collision_envelope", 1.0, "collision_envelope = 1.0"),
             ("contact_damping", 0.1, "contact_damping = 0.1"),
             ("contact_friction", True, "contact_friction = True"),
