@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 from processes import Evoframe
 
 
@@ -45,6 +47,17 @@ def test_config_new_overwrites_nothing_unasked(evoframe: Evoframe, tmp_path: Pat
     assert (tmp_path / "my.toml").read_text() == "[run]\nseed = 2\n"
     assert evoframe("config", "new", "my.toml", "--force").returncode == 0
     assert (tmp_path / "my.toml").read_text() != "[run]\nseed = 2\n"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs names of any bytes")
+def test_config_new_refuses_to_extend_a_file_that_toml_cannot_name(
+    evoframe: Evoframe, tmp_path: Path
+) -> None:
+    (tmp_path / "b\udcff.toml").write_text('extends = "quick"')
+    refused = evoframe("config", "new", "my.toml", "--preset", "b\udcff.toml")
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: b\\udcff.toml: ")
+    assert not (tmp_path / "my.toml").exists()
 
 
 def test_config_new_never_overwrites_the_preset_that_it_reads(evoframe: Evoframe, tmp_path: Path) -> None:

@@ -33,6 +33,13 @@ def evoframe_aggregators():
         offer = discover([str(path)]).find("aggregator", "highest")
         assert str(offer.source) == "'highest_of_all' of highest_of_all local"
 
+    @pytest.mark.skipif(sys.platform != "linux", reason="needs names of any bytes")
+    def test_the_name_of_a_file_of_any_bytes_can_be_recorded(self, tmp_path: Path) -> None:
+        path = tmp_path / "b\udcff.py"
+        path.write_text(self.MODULE)
+        offer = discover([str(path)]).find("aggregator", "highest")
+        assert str(offer.source) == "'b?' of b? local"
+
     def test_a_module_in_the_working_directory_is_a_plugin(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:

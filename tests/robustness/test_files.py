@@ -230,3 +230,22 @@ class TestDamage:
         with pytest.raises(InputError, match=data) as caught:
             read_robustness(written)
         assert caught.value.source == str(path)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
+def test_a_measurement_that_a_windows_program_saved_is_read(
+    written: Path, measured: Robustness, end: str, encoding: str
+) -> None:
+    for name in (files.SCORES_FILE, files.SETTING_FILE):
+        text = (written / name).read_bytes().decode()
+        (written / name).write_bytes(text.replace("\n", end).encode(encoding))
+    assert_same(read_robustness(written), measured)
+
+
+@pytest.mark.parametrize("name", [files.SCORES_FILE, files.SETTING_FILE])
+def test_a_measurement_in_another_encoding_is_refused(written: Path, name: str) -> None:
+    (written / name).write_text((written / name).read_text(), encoding="utf-16")
+    with pytest.raises(InputError, match="UTF-16") as caught:
+        read_robustness(written)
+    assert caught.value.source == str(written / name)

@@ -52,3 +52,9 @@ def test_a_failure_without_a_cause_counts(made: Made, text: str) -> None:
     [planned, *_] = made[2]
     (planned.directory / FAILURE_FILE).write_text(text)
     assert (status_of(planned).state, status_of(planned).cause) == ("failed", "unknown")
+
+
+def test_a_cause_that_names_a_file_of_any_bytes_is_kept(made: Made) -> None:
+    [planned, *_] = made[2]
+    record_failure(planned.directory, "no file b\udcff")
+    assert status_of(planned).cause == "no file b?"

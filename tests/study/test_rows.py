@@ -90,3 +90,51 @@ def test_a_line_that_is_not_a_curve_is_refused(
     with pytest.raises(InputError, match=curve.split(",")[1 if "zero" in curve else 3]) as caught:
         read_rows(tmp_path / "rows.csv")
     assert (caught.value.source, caught.value.key) == (str(tmp_path / "curves.csv"), "line 2")
+
+
+WINDOWS = Path(__file__).parents[1] / "data" / "windows"
+
+
+def test_rows_that_a_windows_program_saved_are_read() -> None:
+    found = read_rows(WINDOWS / "rows_bom.csv")
+    assert len(found) == 20
+    assert list(found[0].settings) == ["aggregator", "populations.morphology.evolver"]
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    given_rows=st.lists(rows, max_size=5, unique_by=lambda row: row.run),
+    end=st.sampled_from(["\n", "\r\n", "\r"]),
+    encoding=st.sampled_from(["utf-8", "utf-8-sig"]),
+)
+def test_marks_and_line_ends_do_not_matter(
+    tmp_path: Path, given_rows: list[Row], end: str, encoding: str
+) -> None:
+    plain = str.maketrans("\r\n", "..")  # values with line ends of their own
+    named = [
+        attrs.evolve(
+            row,
+            settings={key: value.translate(plain) for key, value in row.settings.items()},
+            evoframe=row.evoframe.translate(plain),
+            champion=row.champion.translate(plain),
+            fitness_curve=(row.fitness,),
+        )
+        for row in given_rows
+    ]
+    write_rows(named, tmp_path / "rows.csv")
+    expected = read_rows(tmp_path / "rows.csv")
+    for name in ("rows.csv", "curves.csv"):
+        text = (tmp_path / name).read_bytes().decode()
+        (tmp_path / name).write_bytes(text.replace("\n", end).encode(encoding))
+    assert read_rows(tmp_path / "rows.csv") == expected
+
+
+@pytest.mark.parametrize("name", ["rows.csv", "curves.csv"])
+def test_rows_in_another_encoding_are_refused(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path, name: str
+) -> None:
+    write_rows([row_of(made[2][0], load_run(made[2][0].directory))], tmp_path / "rows.csv")
+    (tmp_path / name).write_text((tmp_path / name).read_text(), encoding="utf-16")
+    with pytest.raises(InputError, match="UTF-16") as caught:
+        read_rows(tmp_path / "rows.csv")
+    assert caught.value.source == str(tmp_path / name)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import click
 from click.shell_completion import get_completion_class
 
+from evoframe.cli.streams import echo
+
 __all__ = ["completion"]
 
 
@@ -16,4 +18,4 @@ def completion(ctx: click.Context, shell: str) -> None:
     class_ = get_completion_class(shell)
     if class_ is None:
         raise click.UsageError(f"click does not support completion for {shell}")
-    click.echo(class_(ctx.find_root().command, {}, "evoframe", "_EVOFRAME_COMPLETE").source())
+    echo(class_(ctx.find_root().command, {}, "evoframe", "_EVOFRAME_COMPLETE").source())

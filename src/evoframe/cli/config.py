@@ -13,8 +13,10 @@ from evoframe.cli.context import (
     plugins_of,
     set_option,
 )
+from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
 from evoframe.config import commented, load_config, starter
+from evoframe.errors import InputError
 
 __all__ = ["config"]
 
@@ -41,7 +43,7 @@ Examples:
 def show(ctx: click.Context, source: str, overrides: tuple[str, ...], comments: bool) -> None:
     """Check a configuration and print it with every default."""
     resolved = load_config(source, overrides=overrides, plugins=plugins_of(ctx))
-    click.echo(commented(resolved) if comments else resolved.to_toml(), nl=False)
+    echo(commented(resolved) if comments else resolved.to_toml(), nl=False)
 
 
 @config.command(
@@ -63,6 +65,10 @@ def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
     its value in the preset.
     """
     text = starter(load_config(preset, plugins=plugins_of(ctx)), preset)
-    write_file(path, text.encode(), force=force, inputs=files_of_settings(ctx, preset))
+    try:
+        data = text.encode()
+    except UnicodeEncodeError as error:
+        raise InputError("its name is not UTF-8 text, as TOML requires; rename it", source=preset) from error
+    write_file(path, data, force=force, inputs=files_of_settings(ctx, preset))
     if path != STDOUT:
         click.echo(f"To run it: {command(ctx, 'run', path)}", err=True)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import shlex
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import attrs
 import click
 from click.shell_completion import CompletionItem
 from rich.console import Console
 
+from evoframe.cli.streams import divert_plugin_text, requested_output
 from evoframe.errors import InputError
 from evoframe.messages import quantity
 
@@ -84,7 +86,11 @@ def _speak(ctx: click.Context, parameter: click.Parameter, value: int) -> None:
 
 
 def common_options(function: F) -> F:
-    """Add ``-v``, ``-q`` and ``-p``, which are accepted before or after the name of a command."""
+    """Add ``-v``, ``-q`` and ``-p``, which are accepted before or after the name of a command.
+
+    What plugins print while the command works goes to standard error.
+    """
+    function = _diverting(function)
     for option in (
         click.option(
             "-p",
@@ -117,10 +123,22 @@ def common_options(function: F) -> F:
     return function
 
 
+def _diverting(function: F) -> F:
+    @functools.wraps(function)
+    def diverting(*args: Any, **kwargs: Any) -> Any:
+        with divert_plugin_text():
+            return function(*args, **kwargs)
+
+    return cast("F", diverting)
+
+
 def output() -> Console:
     """Return the console for tables: names are printed literally, and only a terminal limits the width."""
-    console = Console(markup=False, emoji=False, highlight=False)
-    return console if console.is_terminal else Console(markup=False, emoji=False, highlight=False, width=4096)
+    file = requested_output()
+    console = Console(file=file, markup=False, emoji=False, highlight=False)
+    if console.is_terminal:
+        return console
+    return Console(file=file, markup=False, emoji=False, highlight=False, width=4096)
 
 
 def messages() -> Console:
@@ -177,7 +195,8 @@ def plugins_of(ctx: click.Context) -> Plugins:
 
     common = _common(ctx)
     if common.plugins is None:
-        common.plugins = discover(common.modules)
+        with divert_plugin_text():
+            common.plugins = discover(common.modules)
     return common.plugins
 
 

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from evoframe.cli.context import common_options, output, plugins_of
 from evoframe.cli.sources import with_runs_of_studies
+from evoframe.cli.streams import echo
 from evoframe.errors import InputError
 from evoframe.messages import full_text
 from evoframe.registry import Plugins
@@ -52,7 +53,7 @@ def doctor(ctx: click.Context, directories: tuple[Path, ...], as_json: bool) -> 
         checks["installation"] = list(check_installation(found))
     if as_json:
         documents = {name: [attrs.asdict(check) for check in listed] for name, listed in checks.items()}
-        click.echo(json.dumps(documents, indent=2))
+        echo(json.dumps(documents, indent=2))
     else:
         for name, listed in checks.items():
             _print(name, listed)

@@ -8,6 +8,7 @@ import click
 
 from evoframe.cli.context import common_options, plugins_of, preset_option, set_option
 from evoframe.cli.sources import RUN_OR_FILE, file_options, file_options_of, files_of, print_notes
+from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
 from evoframe.designs import export_job, read_job
 
@@ -68,4 +69,4 @@ def export(
     inputs = [*files_of(ctx, [source]), *files_of_settings(ctx, preset)]
     write_file(path, exported.data, force=force, inputs=inputs)
     if path != STDOUT:
-        click.echo(path)
+        echo(path)

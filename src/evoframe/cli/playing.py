@@ -11,6 +11,7 @@ from rich.table import Table
 from evoframe.cli.context import command, is_quiet, output, scored, warn_overlooked
 from evoframe.cli.progress import Progress
 from evoframe.cli.signals import ended_by_signal, exit_code, stop_on_signals
+from evoframe.cli.streams import echo
 from evoframe.cli.verify import verification_table
 from evoframe.contract import RunConfig, SupportsVariants, unit_of
 from evoframe.designs import verdict
@@ -44,7 +45,7 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
     """Print the results of a finished run, verify its champion, and suggest the next command."""
     quiet, directory = is_quiet(ctx), run.directory
     if quiet:
-        click.echo(directory)
+        echo(directory)
     else:
         output().print(_summary(run, config))
     interrupted = (

@@ -9,6 +9,7 @@ import click
 from rich.table import Table
 
 from evoframe.cli.context import common_options, output, plugins_of
+from evoframe.cli.streams import echo
 from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
 from evoframe.registry import Plugins
 
@@ -34,7 +35,7 @@ def list_(ctx: click.Context, as_json: bool) -> None:
     """List installed components with the plugins that offer them, and plugins that failed to load."""
     found = plugins_of(ctx)
     if as_json:
-        click.echo(json.dumps(_document(found), indent=2))
+        echo(json.dumps(_document(found), indent=2))
         return
     console = output()
     console.print(_table(found))

@@ -15,6 +15,7 @@ import click
 from evoframe._version import __version__
 from evoframe.cli.context import common_options, modules_of, plugin_options, plugins_of
 from evoframe.cli.signals import ended_by_signal, exit_code
+from evoframe.cli.streams import divert_plugin_text, finish_streams, prepare_streams, restore_descriptor
 from evoframe.errors import EvoframeError, PluginWarning, RunError
 from evoframe.messages import full_text
 
@@ -67,7 +68,10 @@ class _Program(click.Group):
         if cmd_name in COMMANDS:
             command: click.Command = getattr(importlib.import_module(f"evoframe.cli.{cmd_name}"), cmd_name)
             return command
-        return self._of_plugins(ctx).commands.get(cmd_name)
+        added = self._of_plugins(ctx).commands.get(cmd_name)
+        if added is not None:
+            restore_descriptor()
+        return added
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         added = {
@@ -96,7 +100,8 @@ class _Program(click.Group):
         from evoframe.registry import Observers  # noqa: PLC0415 - as they do
 
         try:
-            Observers(plugins_of(ctx).manager).tell("evoframe_commands", cli=group)
+            with divert_plugin_text():
+                Observers(plugins_of(ctx).manager).tell("evoframe_commands", cli=group)
         except EvoframeError as error:
             raise _failure(ctx, error) from error
         return group
@@ -143,10 +148,14 @@ def cli() -> None:
 
 def main() -> None:
     """Run the program with the arguments of the process."""
+    prepare_streams()
     warnings.showwarning = _show_warning
     warnings.simplefilter("always", PluginWarning)
-    with ended_by_signal():
-        cli(prog_name="evoframe")
+    try:
+        with ended_by_signal():
+            cli(prog_name="evoframe")
+    except SystemExit as end:
+        sys.exit(finish_streams() if end.code in (None, 0) else end.code)
 
 
 def _show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:

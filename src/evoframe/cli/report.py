@@ -9,6 +9,7 @@ import click
 from evoframe.analysis.statistics.corrections import Correction
 from evoframe.cli.context import common_options, correction_option, is_quiet, needing_extra, plugins_of
 from evoframe.cli.sources import RUN_OR_STUDY
+from evoframe.cli.streams import echo
 from evoframe.errors import InputError
 
 __all__ = ["report"]
@@ -54,8 +55,8 @@ def report(
     for directory in directories:
         written = write(directory, out=out, correction=correction, force=force, plugins=plugins_of(ctx))
         if is_quiet(ctx):
-            click.echo(written.directory)
+            echo(written.directory)
         else:
-            click.echo(written.words)
+            echo(written.words)
             page = written.directory / "report.html"
             click.echo(f"{len(written.files)} files written; open {page} in a browser", err=True)

@@ -28,6 +28,7 @@ from evoframe.cli.context import (
 )
 from evoframe.cli.progress import bar_columns
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, file_options_of, print_notes
+from evoframe.cli.streams import echo
 from evoframe.config import Layer
 from evoframe.messages import unit_factor, unit_name
 from evoframe.robustness import (
@@ -128,10 +129,10 @@ def robustness(
     found = analysis.find(measured, correction)
     written += analysis.write_findings(found, directory)
     if as_json:
-        click.echo(json.dumps(analysis.as_json(found)))
+        echo(json.dumps(analysis.as_json(found)))
         return
     output().print(_table(analysis.records(analysis.groups_table(found)), setting.unit))
-    click.echo(f"\n{analysis.conclusions(found)}", nl=False)
+    echo(f"\n{analysis.conclusions(found)}", nl=False)
     if not is_quiet(ctx):
         click.echo(f"{len(written)} files written to {directory}", err=True)
 

@@ -23,6 +23,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, files_of, read_jobs
+from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, refuse_inputs, write_file
 from evoframe.config import Layer
 from evoframe.contract import Score, unit_of
@@ -107,14 +108,12 @@ def simulate(
         for label, score in zip(job.labels, scores, strict=True)
     ]
     if as_json:
-        click.echo(json.dumps(_document(bodies)))
+        echo(json.dumps(_document(bodies)))
     else:
         output().print(_table(bodies))
         for job in jobs:
             if job.unscored:
-                click.echo(
-                    f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}"
-                )
+                echo(f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}")
     for job, scores in scored_jobs:
         warn_overlooked(ctx, job.path, job.config, job.designs, scores)
 

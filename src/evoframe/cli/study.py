@@ -12,6 +12,7 @@ from rich.table import Table
 from evoframe.cli.context import command, common_options, is_quiet, modules_of, output, plugins_of, set_option
 from evoframe.cli.signals import stop_on_signals
 from evoframe.cli.sources import refuse_preset
+from evoframe.cli.streams import echo
 from evoframe.cli.study_progress import StudyProgress, duration, table_of_cells
 from evoframe.messages import quantity
 from evoframe.study import (
@@ -111,7 +112,7 @@ def study(
             stop=stop.is_asked,
         )
     if is_quiet(ctx):
-        click.echo(result.directory)
+        echo(result.directory)
     else:
         output().print(_results(result))
         done, total = len(result.rows), len(result.study.cells) * result.study.runs

@@ -20,6 +20,7 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, read_jobs
+from evoframe.cli.streams import echo
 from evoframe.config import Layer
 from evoframe.designs import Job, keep_of_job, verdict, verify_job
 from evoframe.messages import quantity, unit_name
@@ -64,7 +65,7 @@ def verify(
         labelled = [
             (job, label, each) for job, made in found for label, each in zip(job.labels, made, strict=True)
         ]
-        click.echo(json.dumps([_document(job, label, each) for job, label, each in labelled]))
+        echo(json.dumps([_document(job, label, each) for job, label, each in labelled]))
     else:
         for job, verifications in found:
             _print(job, verifications)

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from evoframe.cli.context import modules_of
+from evoframe.cli.streams import echo, lend_descriptor
 from evoframe.config import read_layers
 from evoframe.errors import InputError, RunError
 from evoframe.files import write_atomically
@@ -42,6 +43,7 @@ def files_of_settings(ctx: click.Context, preset: str | None) -> Iterator[Path]:
             yield Path(file)
 
 
+@lend_descriptor()  # for a path such as /dev/stdout
 def refuse_inputs(path: Path, inputs: Iterable[Path]) -> None:
     """Refuse to overwrite a file that the command reads, whatever the spelling of its path.
 
@@ -57,6 +59,7 @@ def refuse_inputs(path: Path, inputs: Iterable[Path]) -> None:
             raise InputError(f"is an input of this command ({each}); choose another name", source=path)
 
 
+@lend_descriptor()
 def write_file(path: Path, data: bytes, *, force: bool, inputs: Iterable[Path] = ()) -> None:
     """Write a file, or standard output for :data:`STDOUT`; overwrite different content only with *force*.
 
@@ -72,7 +75,7 @@ def write_file(path: Path, data: bytes, *, force: bool, inputs: Iterable[Path] =
     refuse_inputs(path, inputs)
     try:
         if path == STDOUT:
-            click.echo(data, nl=False)
+            echo(data, nl=False)
         elif path.exists() and not path.is_file():
             path.write_bytes(data)  # a device or a pipe; fails for a directory
         elif not path.exists() or path.read_bytes() != data:

@@ -13,7 +13,7 @@ import attrs
 from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files import exists, parsed_toml, read_text
+from evoframe.files import TOO_DEEP, exists, is_too_deep, parsed_toml, read_text
 from evoframe.messages import found, suggestion
 
 __all__ = [
@@ -29,7 +29,7 @@ __all__ = [
 _KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*")
 _BARE_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.:/-]*")
 _LARGEST_FILE = 16  # MiB
-_DEEPEST = 32  # levels of nested tables and lists; options need fewer than 8
+_LONGEST_SHOWN = 86  # characters of a source in an error about its depth
 
 
 @attrs.frozen
@@ -69,6 +69,9 @@ class Layers:
         if isinstance(overrides, str):
             raise TypeError("overrides must be a list of strings, not a string")
         on_top = [given if isinstance(given, Layer) else _override(given) for given in overrides]
+        for layer in on_top:
+            if is_too_deep(layer.tree):  # also values from Python, and long keys
+                raise ConfigurationError(TOO_DEEP, source=_shown(layer.origin))
         return attrs.evolve(self, layers=(*self.layers, *map(_with_component_tables, on_top)))
 
     def without(self, *keys: str) -> Layers:
@@ -185,7 +188,7 @@ def _chain(name: str, relative_to: Path, seen: tuple[_Source, ...]) -> list[Laye
     if any(source.equals(other) for other in seen):
         chain = " -> ".join(map(str, [*seen, source]))
         raise _extends_error(source, f"a file must not extend itself: {chain}")
-    tree = _parsed(text, str(source))
+    tree = parsed_toml(text, str(source), ConfigurationError)
     tree.pop("provenance", None)  # information that a run wrote, not settings
     layer = Layer(str(source), tree)
     base = tree.pop("extends", False if source.preset == "paper" else "paper")
@@ -213,20 +216,8 @@ def _extends_error(source: _Source, problem: str) -> ConfigurationError:
     return ConfigurationError(problem, source=source, key="extends")
 
 
-def _parsed(text: str, origin: str) -> Tree:
-    tree = parsed_toml(text, origin, ConfigurationError)
-    _refuse_depth(tree, origin)
-    return tree
-
-
-def _refuse_depth(tree: Tree, origin: str) -> None:
-    """Refuse nesting that could exceed the recursion limit."""
-    level: list[Any] = [tree]
-    for _ in range(_DEEPEST):
-        inner = [value.values() if isinstance(value, dict) else value for value in level]
-        level = [item for values in inner for item in values if isinstance(item, dict | list)]
-    if level:
-        raise ConfigurationError(f"tables and lists are nested more than {_DEEPEST} deep", source=origin)
+def _shown(origin: str) -> str:
+    return origin if len(origin) <= _LONGEST_SHOWN else f"{origin[:_LONGEST_SHOWN]}..."
 
 
 def _override(text: str) -> Layer:
@@ -236,17 +227,13 @@ def _override(text: str) -> Layer:
         raise ConfigurationError(
             "expected key=value, as in aggregator=hm or run.seed=2", source=f"--set {text}"
         )
-    if key.count(".") >= _DEEPEST:
-        raise ConfigurationError(
-            f"tables are nested more than {_DEEPEST} deep", source=f"--set {text[:80]}..."
-        )
     return layer_of(f"--set {text}", key, _value(text, value.strip()))
 
 
 def _value(text: str, value: str) -> Any:
     if _BARE_WORD.fullmatch(value) and value not in ("true", "false", "inf", "nan"):
         return value
-    tree = _parsed(f"value = {value}", f"--set {text}")
+    tree = parsed_toml(f"value = {value}", f"--set {text}", ConfigurationError)
     if list(tree) != ["value"]:
         raise ConfigurationError("the right side must be one TOML value", source=f"--set {text}")
     return tree["value"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import numbers
 from collections.abc import Sequence
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from evoframe.contract import Design, Encoder, EvolverRun, Member, Network, PopulationReport, blaming
 from evoframe.documents import structure
 from evoframe.errors import ComponentError, RunError
+from evoframe.files import json_text
 
 __all__ = ["Population"]
 
@@ -72,7 +72,7 @@ class Population:
         """Return the genome at *position* as JSON values."""
         with blaming(self._evolver, self.called(position)):
             genome = self.evolver.dump(self.genomes[position])
-            json.dumps(genome, allow_nan=False)  # fails here, so that the evolver is named
+            json_text({"genomes": {self.name: genome}})  # fails here, so that the evolver is named
             return genome
 
     def decode(self, position: int, design: Design) -> Design:

@@ -2,10 +2,14 @@
 
 from evoframe.files.locks import LOCK_FILE, Lock, acquire_lock, locked, locked_after_others, released_on_error
 from evoframe.files.reading import (
+    DEEPEST,
     LARGEST_DOCUMENT,
+    TOO_DEEP,
+    encodable,
     exists,
     is_directory,
     is_file,
+    is_too_deep,
     parsed_json,
     parsed_toml,
     read_text,
@@ -15,14 +19,18 @@ from evoframe.files.reading import (
 from evoframe.files.writing import is_leftover, json_text, remove, write_atomically, write_json
 
 __all__ = [
+    "DEEPEST",
     "LARGEST_DOCUMENT",
     "LOCK_FILE",
+    "TOO_DEEP",
     "Lock",
     "acquire_lock",
+    "encodable",
     "exists",
     "is_directory",
     "is_file",
     "is_leftover",
+    "is_too_deep",
     "json_text",
     "locked",
     "locked_after_others",

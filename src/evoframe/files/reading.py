@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import codecs
 import json
+import re
 import stat
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from evoframe.errors import EvoframeError, InputError
 
 __all__ = [
+    "DEEPEST",
     "LARGEST_DOCUMENT",
+    "TOO_DEEP",
+    "encodable",
     "exists",
     "is_directory",
     "is_file",
+    "is_too_deep",
     "parsed_json",
     "parsed_toml",
     "read_text",
@@ -25,9 +32,21 @@ __all__ = [
 LARGEST_DOCUMENT = 64
 """Maximum size of a design or of a saved state, MiB; real ones are far smaller."""
 
+DEEPEST = 64
+"""Maximum number of lists and tables inside each other, in every document; evoframe's own have at most 8.
+
+Functions that recurse into a document need a few frames for each, of the thousand that Python has.
+"""
+
+TOO_DEEP = f"lists and tables are nested more than {DEEPEST} deep"
+"""The problem of a document that :func:`is_too_deep`."""
+
+_KEY = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{DEEPEST}}}")
+
 
 def read_text(path: Path, largest: int) -> str:
-    """Return the text of a file.
+    """Return the text of a file, without a byte order mark; line ends remain.
 
     Args:
         path: The file.
@@ -41,23 +60,57 @@ def read_text(path: Path, largest: int) -> str:
             content = file.read((largest << 20) + 1)
         if len(content) > largest << 20:
             raise InputError(f"exceeds {largest} MiB", source=path)
-        return content.decode("utf-8")
+        if encoding := _another_encoding(content):
+            raise InputError(f"is {encoding} text; save it as UTF-8", source=path)
+        return content.decode("utf-8-sig")  # Windows programs begin a file with a byte order mark
     except UnicodeDecodeError as error:
-        raise InputError("is not UTF-8 text", source=path) from error
+        raise InputError("is not UTF-8 text; save it as UTF-8", source=path) from error
     except (OSError, ValueError) as error:
         raise _unreadable(path, error) from error
+
+
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
+
+_MARKS = {  # the longer first: the shorter begins it
+    codecs.BOM_UTF32_LE: "UTF-32",
+    codecs.BOM_UTF32_BE: "UTF-32",
+    codecs.BOM_UTF16_LE: "UTF-16",
+    codecs.BOM_UTF16_BE: "UTF-16",
+}
+_ZEROS: Mapping[tuple[bool, ...], str] = {
+    (True, True, True, False): "UTF-32",
+    (False, True, True, True): "UTF-32",
+    (True, False, True, False): "UTF-16",
+    (False, True, False, True): "UTF-16",
+}
+"""Which of the first four bytes are zero in ASCII characters without a mark, as in section 3 of RFC 4627."""
+
+
+def _another_encoding(content: bytes) -> str | None:
+    """Return the name of an encoding other than UTF-8 that a text has for certain."""
+    for mark, name in _MARKS.items():
+        if content.startswith(mark):
+            return name
+    return _ZEROS.get(tuple(byte == 0 for byte in content[:4]))
 
 
 def parsed_json(text: str) -> Any:
     """Return the value of an untrusted JSON text.
 
     Raises:
-        ValueError: The text is not valid JSON.
+        ValueError: The text is not valid JSON, or is nested deeper than :data:`DEEPEST`.
     """
     try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
+        document = json.loads(text)
+        if _SURROGATE.search(text):  # half a character, which no file that evoframe writes can contain
+            json.dumps(document, ensure_ascii=False).encode()
+    except ValueError as error:
         raise ValueError(f"not valid JSON: {error}") from error
+    except RecursionError as error:
+        raise ValueError(TOO_DEEP) from error
+    if is_too_deep(document):
+        raise ValueError(TOO_DEEP)
+    return document
 
 
 def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputError) -> dict[str, Any]:
@@ -69,12 +122,35 @@ def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputE
         error_type: Type of the error.
 
     Raises:
-        EvoframeError: The text is not valid TOML; of the given type.
+        EvoframeError: The text is not valid TOML, or is nested deeper than :data:`DEEPEST`; of the given
+            type.
     """
+    if _DEEP_KEY.search(text):  # tomllib takes quadratic time for a dotted key
+        raise error_type(TOO_DEEP, source=origin)
+    if "\n" not in text:  # the line ends of old Macs, which TOML does not know
+        text = text.replace("\r", "\n")
     try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
+        text.encode()  # fails for a name of a file that is not UTF-8, given as a setting
+        tables = tomllib.loads(text)
+    except ValueError as error:  # also for a number of thousands of digits
         raise error_type(f"not valid TOML: {error}", source=origin) from error
+    except RecursionError as error:
+        raise error_type(TOO_DEEP, source=origin) from error
+    if is_too_deep(tables):
+        raise error_type(TOO_DEEP, source=origin)
+    return tables
+
+
+def is_too_deep(document: Any) -> bool:
+    """Return whether lists and tables are nested deeper than :data:`DEEPEST`, or contain themselves."""
+    level = [document] if isinstance(document, dict | list | tuple) else []
+    for _ in range(DEEPEST):
+        if not level:
+            return False
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        items = (item for values in inner for item in values if isinstance(item, dict | list | tuple))
+        level = list({id(item): item for item in items}.values())  # one that is shared counts once
+    return bool(level)
 
 
 def is_directory(path: Path) -> bool:
@@ -125,7 +201,12 @@ def _unreadable(path: Path, error: OSError | ValueError) -> InputError:
 
 def shown_name(path: Path) -> str:
     """Return the name of a directory for a title; characters that UTF-8 cannot encode become ``?``."""
-    return path.resolve().name.encode("utf-8", "replace").decode()
+    return encodable(path.resolve().name)
+
+
+def encodable(text: str) -> str:
+    """Return a text that may contain the name of a file; characters that UTF-8 cannot encode become ``?``."""
+    return text.encode("utf-8", "replace").decode()
 
 
 def refuse_links(directory: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from evoframe.errors import RunError
+from evoframe.files.reading import TOO_DEEP, is_too_deep
 
 __all__ = ["is_leftover", "json_text", "remove", "write_atomically", "write_json"]
 
@@ -40,7 +41,7 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise RunError(f"cannot be written: {error.strerror}", source=path) from error
 
 
-# Without this check, a value that contains itself raises RecursionError.
+# The check for values that contain themselves takes time, and is_too_deep() finds them.
 _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False, check_circular=False).encode
 
 
@@ -49,9 +50,11 @@ def json_text(document: Any) -> str:
 
     Raises:
         TypeError: The document contains a value that JSON cannot represent.
-        ValueError: The document contains a number that is not finite.
-        RecursionError: The document contains itself, or is nested too deeply.
+        ValueError: The document contains a number that is not finite, contains itself, or is nested deeper
+            than can be read back.
     """
+    if is_too_deep(document):
+        raise ValueError(TOO_DEEP)
     return _encode(document)
 
 

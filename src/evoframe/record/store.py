@@ -267,7 +267,7 @@ def _state(part: str, values: Any) -> str:
     """Return a part of the state as JSON text; blame its evolver if it cannot be JSON."""
     try:
         return json_text(values)
-    except (TypeError, ValueError, RecursionError) as error:
+    except (TypeError, ValueError) as error:
         kind, _, population = part.partition("/")
         problem = f"its state cannot be saved as JSON: {error}"
         if kind == "population":

@@ -14,6 +14,7 @@ from types import ModuleType
 
 from evoframe.contract import Source
 from evoframe.errors import PluginError, PluginWarning
+from evoframe.files import encodable
 from evoframe.messages import cause_of
 from evoframe.registry.registry import Plugins, Skipped, normalized
 
@@ -76,7 +77,7 @@ def _load_guarded(plugins: Plugins, source: Source, entry_point: importlib.metad
 def _load_local(plugins: Plugins, module: str) -> None:
     name = Path(module).stem if module.endswith(".py") else module
     try:
-        plugins.add(_import_local(module, name), Source(name, "local", name))
+        plugins.add(_import_local(module, name), Source(encodable(name), "local", encodable(name)))
     except (Exception, SystemExit) as error:
         cause = cause_of(error)
         raise PluginError(f"cannot be used as a plugin: {cause}", source=module) from error

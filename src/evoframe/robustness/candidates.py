@@ -12,7 +12,7 @@ from evoframe.contract import FileOptions, RunConfig, SupportsPublished, Support
 from evoframe.designs import DEFAULT_PRESET, Job, read_job
 from evoframe.documents import differences
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files import shown_name
+from evoframe.files import encodable, shown_name
 from evoframe.registry import Plugins
 from evoframe.robustness.measurement import Candidate
 from evoframe.study import STUDY_FILE, Planned, is_study, name_of, read_study, shown, survey
@@ -180,7 +180,7 @@ def _of_job(job: Job) -> Part:
 
 def _text(path: Path) -> str:
     """Return a path as text for files; bytes that are not UTF-8 are replaced."""
-    return str(path).encode("utf-8", "replace").decode()
+    return encodable(str(path))
 
 
 def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:

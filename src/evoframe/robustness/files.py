@@ -135,13 +135,20 @@ def read_robustness(directory: str | Path) -> Robustness:
         scores = _read_scores(text, found)
     except (ValueError, csv.Error) as error:
         raise InputError(f"not as evoframe writes it: {error}", source=path) from error
-    if hashlib.sha256(text.encode()).hexdigest() != found.scores_sha256:
+    if found.scores_sha256 not in _digests(text):
         raise InputError(
             f"its SHA-256 is not the one recorded in {SETTING_FILE}; repeat the measurement with --force",
             source=path,
         )
     scores.setflags(write=False)
     return Robustness(found.setting, scores, found.divergences())
+
+
+def _digests(text: str) -> set[str]:
+    """Return the SHA-256 of a table, and of the same with the line ends that evoframe writes."""
+    ends = "\r\n" if "\n" in text else "\r"  # of Windows, or of old Macs
+    texts = (text, text.replace(ends, "\n"))
+    return {hashlib.sha256(each.encode()).hexdigest() for each in texts}
 
 
 def _compared(setting: Setting, *, labelled: bool) -> dict[str, Any]:
@@ -228,7 +235,7 @@ def scores_text(measured: Robustness) -> str:
 
 def _read_scores(text: str, found: _Document) -> np.ndarray[Any, np.dtype[np.float64]]:
     setting = found.setting
-    header, *rows = [*csv.reader(io.StringIO(text))] or [[]]
+    header, *rows = [*csv.reader(io.StringIO(text, newline=""))] or [[]]
     if header != [_FIRST, *(body.label for body in setting.bodies)]:
         raise ValueError(f"columns differ from the bodies in {SETTING_FILE}")
     numbers = [row[0] if row else "" for row in rows]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from evoframe.config import Layer, layers_in, layers_of, resolve_layers
 from evoframe.contract import RunConfig, SupportsVariants
@@ -18,7 +17,6 @@ from evoframe.record import (
     SINGLE,
     Run,
     Store,
-    design_from_json,
     open_run,
     provenance_of,
 )
@@ -229,5 +227,5 @@ def _resume(store: Store, saved: Run, changes: Sequence[str]) -> None:
     store.resume({table: saved.rows(table) for table in (*CHAINED, *SINGLE)}, changes)
     document = saved.champion_document()
     if document is not None and not saved.champion_is_written():
-        champion: Mapping[str, Any] = parsed_json(document)
-        store.save_champion(champion, design_from_json(champion["design"]))
+        design = saved.champion().design  # refuses a damaged document
+        store.save_champion(parsed_json(document), design)

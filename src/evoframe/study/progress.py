@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 import attrs
 
 from evoframe.errors import InputError, LockedError
-from evoframe.files import LARGEST_DOCUMENT, locked, parsed_json, read_text, write_json
+from evoframe.files import LARGEST_DOCUMENT, encodable, locked, parsed_json, read_text, write_json
 from evoframe.record import CONFIG_FILE, open_run
 from evoframe.runs import is_verified
 from evoframe.study.plan import Planned
@@ -110,7 +110,7 @@ def record_failure(directory: Path, cause: str) -> None:
     directory.mkdir(parents=True, exist_ok=True)
     with contextlib.suppress(LockedError), locked(directory):
         if not path.exists():
-            write_json(path, {"cause": cause})
+            write_json(path, {"cause": encodable(cause)})
 
 
 def clear_failure(directory: Path) -> None:

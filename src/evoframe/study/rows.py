@@ -220,7 +220,8 @@ def read_rows(path: Path) -> list[Row]:
 
 def _table(path: Path, columns: Collection[str]) -> list[dict[str, str]]:
     try:
-        reader = csv.DictReader(io.StringIO(read_text(path, LARGEST_DOCUMENT)), strict=True)
+        text = io.StringIO(read_text(path, LARGEST_DOCUMENT), newline="")  # any line ends
+        reader = csv.DictReader(text, strict=True)
         lines, there = list(reader), reader.fieldnames or ()
     except csv.Error as error:
         raise InputError(f"not a CSV table: {error}", source=path) from error

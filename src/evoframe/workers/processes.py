@@ -17,6 +17,8 @@ from typing import Any, TypeVar
 
 import pebble
 
+from evoframe.streams import make_unfailing
+
 if sys.platform == "linux":
     import fcntl
 
@@ -117,6 +119,7 @@ def _sigint_blocked() -> Iterator[None]:
 
 def _initialize(initializer: Callable[..., object] | None, *initargs: Any) -> None:
     _end_with_parent()
+    make_unfailing()
     if initializer is not None:
         initializer(*initargs)
 

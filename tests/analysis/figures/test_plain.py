@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import matplotlib as mpl
 import pytest
-from matplotlib.figure import Figure
 
+from evoframe.analysis.drawing import Figure
 from evoframe.analysis.figures.plain import plain
 
 

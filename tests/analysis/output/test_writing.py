@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure
 
+from evoframe.analysis.drawing import Figure
 from evoframe.analysis.output.writing import figure_files, prepare_directory, table_files, write_files
 from evoframe.errors import InputError
 

@@ -4,6 +4,7 @@
 generations, :func:`body` a design, and :func:`network` the network of a genome.
 """
 
+import evoframe.analysis.drawing  # noqa: F401 - before others import matplotlib
 from evoframe.analysis.figures.bodies import body
 from evoframe.analysis.figures.lines import Line, lines_of_run, lines_of_view
 from evoframe.analysis.figures.networks import TooLargeError, network

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d import proj3d
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
+from evoframe.analysis.drawing import Figure
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLUMN
 from evoframe.contract import Geometry, GeometryPart

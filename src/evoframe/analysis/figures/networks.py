@@ -8,11 +8,11 @@ from typing import Any
 
 import attrs
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from matplotlib.path import Path
 
+from evoframe.analysis.drawing import Figure
 from evoframe.analysis.figures.layered import Layout, effective, layered
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import BOTH_COLUMNS, COLOURS, COLUMN, text_width

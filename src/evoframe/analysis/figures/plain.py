@@ -1,4 +1,4 @@
-"""Figures with literal texts: names of files may contain dollar signs, which must not start a formula."""
+"""Figures in matplotlib's default style, with literal texts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import ParamSpec
 
-import matplotlib as mpl
-from matplotlib.figure import Figure
+from evoframe.analysis.drawing import Figure, default_style
 
 __all__ = ["plain"]
 
@@ -15,11 +14,11 @@ P = ParamSpec("P")
 
 
 def plain(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Decorate a function that draws a figure, so that matplotlib does not parse formulas in its texts."""
+    """Decorate a function that draws a figure, so that settings of the user do not change it."""
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with mpl.rc_context({"text.parse_math": False}):
+        with default_style():
             return draw(*args, **kwargs)
 
     return drawn

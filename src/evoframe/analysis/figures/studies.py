@@ -10,12 +10,12 @@ import numpy as np
 import pandas as pd
 import scikit_posthocs as posthocs
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from evoframe.analysis.data.studies import View, Yardstick
 from evoframe.analysis.data.units import AXIS_NAMES, CURVE_NAMES, axis_title
+from evoframe.analysis.drawing import Figure
 from evoframe.analysis.figures.lines import Line, lines_of_view
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, DASHES, break_lines, row_height, text_width

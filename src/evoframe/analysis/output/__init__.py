@@ -3,6 +3,7 @@
 The same content always gives the same bytes. All sentences of conclusions are in the folder ``templates``.
 """
 
+import evoframe.analysis.drawing  # noqa: F401 - before others import matplotlib
 from evoframe.analysis.output.listing import LIST_FILE, listed, settle
 from evoframe.analysis.output.names import slugs
 from evoframe.analysis.output.texts import counted, written

@@ -13,7 +13,7 @@ import attrs
 
 from evoframe.analysis.output.writing import write_files
 from evoframe.errors import InputError, RunError
-from evoframe.files import LARGEST_DOCUMENT, is_file, read_text
+from evoframe.files import LARGEST_DOCUMENT, is_file, parsed_json, read_text
 
 __all__ = ["LIST_FILE", "Listing", "announce", "listed", "refuse_overwriting", "settle"]
 
@@ -45,13 +45,13 @@ def listed(directory: Path) -> Listing:
     if not is_file(path):
         return Listing()
     try:
-        document = json.loads(read_text(path, LARGEST_DOCUMENT))
+        document = parsed_json(read_text(path, LARGEST_DOCUMENT))
         files = {name: {str(digest)} for name, digest in document["files"].items()}
         for name, digests in document.get("earlier", {}).items():
             files.setdefault(name, set()).update(map(str, digests))
         if not all(re.fullmatch(r"[^/\0]+", name) and name not in {".", ".."} for name in files):
             raise ValueError("a file outside of the directory")  # noqa: TRY301 - handled as the others
-    except (AttributeError, ValueError, TypeError, KeyError, RecursionError) as error:
+    except (AttributeError, ValueError, TypeError, KeyError) as error:
         raise InputError(
             "is not a list of a report's files; remove it, or choose another directory with --out",
             source=path,

@@ -8,10 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import pandas as pd
-from matplotlib.figure import Figure
 
+from evoframe.analysis.drawing import Figure, default_style
 from evoframe.analysis.output.latex import latex_table
 from evoframe.errors import InputError
 from evoframe.files import write_atomically
@@ -47,14 +46,14 @@ def figure_files(figure: Figure, name: str) -> dict[str, bytes]:
         figure: The figure.
         name: Name of the files without extension. The ids in the SVG file depend on it.
     """
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # otherwise each format gets a slightly different layout
     files = {}
-    for ending, options in _FORMATS.items():
-        data = io.BytesIO()
-        with mpl.rc_context({"svg.hashsalt": name, "pdf.fonttype": 42, "svg.fonttype": "none"}):
+    with default_style(**{"svg.hashsalt": name, "pdf.fonttype": 42, "svg.fonttype": "none"}):
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # otherwise each format gets a slightly different layout
+        for ending, options in _FORMATS.items():
+            data = io.BytesIO()
             figure.savefig(data, format=ending, **options)
-        files[f"{name}.{ending}"] = data.getvalue()
+            files[f"{name}.{ending}"] = data.getvalue()
     return files
 
 

@@ -3,6 +3,7 @@
 :func:`page` builds it from sections. Their blocks are paragraphs, tables, pictures, charts and a moving body.
 """
 
+import evoframe.analysis.drawing  # noqa: F401 - before others import matplotlib
 from evoframe.analysis.page.charts import finals_chart, lines_chart
 from evoframe.analysis.page.html import (
     Block,

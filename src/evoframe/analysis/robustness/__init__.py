@@ -3,6 +3,7 @@
 :func:`find` compares the groups of a measurement; the other functions present the findings.
 """
 
+import evoframe.analysis.drawing  # noqa: F401 - before others import matplotlib
 from evoframe.analysis.robustness.figure import violins
 from evoframe.analysis.robustness.files import as_json, records, write_findings, write_robustness
 from evoframe.analysis.robustness.findings import Findings, find

@@ -8,10 +8,10 @@ from typing import cast
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from evoframe.analysis.data.units import axis_title
+from evoframe.analysis.drawing import Figure
 from evoframe.analysis.figures.plain import plain
 from evoframe.analysis.figures.printed import COLOURS, COLUMN, break_lines, row_height
 from evoframe.messages import unit_factor

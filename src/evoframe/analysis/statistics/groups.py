@@ -12,6 +12,9 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
+import evoframe.analysis.drawing  # noqa: F401 - before others import matplotlib
+
+# isort: split
 import attrs
 import numpy as np
 import scikit_posthocs as posthocs
