@@ -7,6 +7,7 @@ import os
 import pty
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -35,6 +36,23 @@ def python(
         text=True,
         check=False,
     )
+
+
+def eventually(condition: Callable[[], object], failure: str, limit: float = 120.0) -> None:
+    """Wait until a condition holds; the limit, in s, only ends a test that has failed."""
+    until = time.monotonic() + limit
+    while not condition():
+        assert time.monotonic() < until, failure
+        time.sleep(0.01)
+
+
+def is_ended(process: int) -> bool:
+    """Return whether a process has ended; a zombie has."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text()
+    except OSError:
+        return True
+    return state.rpartition(")")[2].split()[0] == "Z"
 
 
 @contextlib.contextmanager

@@ -1,9 +1,9 @@
 """Kill workers at random moments, mostly while they start, and compare results with undisturbed ones.
 
-``python tests/survival/worker_kills.py --kills 400 --busy 2`` is the long form (``make kills``); the suite kills
-60 times. Every child of a program is killed, with SIGKILL, up to half a second after its start, or later: those
-of a run with the executor ``processes``, and those of a study. No kill may delay the program, change a result,
-or show on the terminal otherwise than as a message of evoframe.
+``python tests/survival/worker_kills.py --kills 400 --busy 2`` is the long form (``make kills``); the suite
+kills 60 times. Children of a run with the executor ``processes``, and of a study, are killed up to half a
+second after their start, or later. No kill may delay the program, change a result, or show on the terminal
+otherwise than as a message of evoframe.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pathlib import Path
 import attrs
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
-from processes import surroundings
+from processes import is_ended, surroundings
 from recorded import assert_same_result
 
 STUDY = """
@@ -41,7 +41,7 @@ generations = 20
 
 _STALL = 20.0  # s; longest time in which a killed worker may remain without a replacement on a busy computer
 _END = 120.0  # s; longest time that a program may take after the last kill
-_OWN = re.compile(r"a worker process ended with the signal SIGKILL; its work is repeated, attempt \d+")
+_OWN = re.compile(r"evoframe\.workers\.processes: .* ended with the signal SIGKILL; its work is repeated, .*")
 
 
 @attrs.define
@@ -93,9 +93,8 @@ def children(process: int) -> Iterator[int]:
     for path in Path(f"/proc/{process}/task").glob("*/children"):
         with contextlib.suppress(OSError):  # the thread has ended
             for child in map(int, path.read_text().split()):
-                with contextlib.suppress(OSError):
-                    if Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] != "Z":
-                        yield child
+                if not is_ended(child):
+                    yield child
 
 
 def evoframe(directory: Path, arguments: list[str], killer: Killer) -> list[str]:

@@ -79,6 +79,7 @@ class Worker:
         except RuntimeError:  # no more threads
             self._process.kill()
             self._await_end()
+            self._channel.close()
             raise
 
     @property
