@@ -10,6 +10,7 @@ from evoframe.contract.config import (
     RunConfig,
     RunSettings,
     Source,
+    deciding,
     is_role,
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
@@ -113,6 +114,7 @@ __all__ = [
     "Variant",
     "Workload",
     "blaming",
+    "deciding",
     "is_role",
     "unit_of",
 ]

@@ -30,6 +30,7 @@ __all__ = [
     "RunConfig",
     "RunSettings",
     "Source",
+    "deciding",
     "is_role",
 ]
 
@@ -48,6 +49,9 @@ POPULATION_COMPONENTS: Mapping[str, str] = {"encoder": "encoder", "evolver": "ev
 """Key within a population -> kind of the component that it chooses."""
 
 
+_NOT_DECIDING = ("extends", "executor", "provenance")  # tables of a run's configuration
+
+
 @attrs.frozen(order=True)
 class Source:
     """The origin of a plugin.
@@ -56,11 +60,13 @@ class Source:
         distribution: Name of the installed distribution, or of the local module given with ``-p``.
         version: The distribution's version; ``local`` for a local module.
         entry_point: Name of the entry point in the group ``evoframe``.
+        digest: SHA-256 of the source of a local module; empty for a distribution, which has a version.
     """
 
     distribution: str
     version: str
     entry_point: str
+    digest: str = ""
 
     def __str__(self) -> str:
         return f"'{self.entry_point}' of {self.distribution} {self.version}"
@@ -176,8 +182,7 @@ class RunConfig:
 
     def deciding(self) -> Tree:
         """Return the tables that determine the result (all but the executor) as JSON values."""
-        kept = {key: table for key, table in self.tables().items() if key not in ("extends", "executor")}
-        return as_read(kept)
+        return as_read(deciding(self.tables()))
 
     def simulation(self) -> Tree:
         """Return the tables that determine the simulation and the score of a design."""
@@ -186,6 +191,11 @@ class RunConfig:
     def to_toml(self) -> str:
         """Return the text of an equivalent TOML file."""
         return tomli_w.dumps(self.tables())
+
+
+def deciding(tables: Mapping[str, Any]) -> Tree:
+    """Return those tables of a complete configuration that determine the result."""
+    return {key: table for key, table in tables.items() if key not in _NOT_DECIDING}
 
 
 def is_role(name: str) -> bool:
