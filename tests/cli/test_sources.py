@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pausing
 import pytest
 import toys
 from processes import Evoframe, started, told
@@ -101,8 +102,9 @@ def test_a_local_plugin_that_was_edited_is_refused_until_it_is_allowed(
 ) -> None:
     (tmp_path / "mine.py").write_text(PLUGIN)
     options = (*TOYS, "-p", "mine.py")
-    slow = ("--set", "aggregator=extreme", "--set", "simulator={name='toy-slow', delay=0.02}")
-    with started(tmp_path, "run", *options, "-v", "toy.toml", *slow, "--out", "r") as process:
+    (tmp_path / "pause").touch()
+    arguments = ["-p", pausing.__file__, "-v", "toy.toml", "--set", "aggregator=extreme", "--out", "r"]
+    with started(tmp_path, "run", *options, *arguments) as process:
         told(process, "turn 0")
     (tmp_path / "mine.py").write_text(PLUGIN.replace("max", "min"))
     refused = evoframe("resume", *options, "r")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import toys
+from processes import LIMIT
 
 from evoframe import RunError, WorkerError, load_run
 from evoframe.study.plan import Study
@@ -16,7 +17,6 @@ from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.worker import Order
 
 Read = Callable[..., Study]
-LONG = 120.0  # s; more than a run of toys takes on a busy computer
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_a_requested_stop_reaches_runs_that_start_later(orders: list[Order]) -> 
     with contextlib.closing(Pool(1, [toys.__file__])) as pool:
         pool.request_stop()
         pool.request_stop()
-        assert pool.start(orders[0]).result(LONG) == End("stopped")
+        assert pool.start(orders[0]).result(LIMIT) == End("stopped")
 
 
 def test_a_run_whose_workers_cannot_start_fails_with_the_cause(orders: list[Order]) -> None:

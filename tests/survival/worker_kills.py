@@ -24,7 +24,7 @@ from pathlib import Path
 import attrs
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
-from processes import is_ended, surroundings
+from processes import children, surroundings
 from recorded import assert_same_result
 
 STUDY = """
@@ -86,15 +86,6 @@ class Killer:
 
     def _delay(self) -> float:
         return self.chance.uniform(0.0, 0.5) if self.chance.random() < 0.8 else self.chance.uniform(0.5, 2.0)
-
-
-def children(process: int) -> Iterator[int]:
-    """Yield the ids of the children of a process, without those that have ended."""
-    for path in Path(f"/proc/{process}/task").glob("*/children"):
-        with contextlib.suppress(OSError):  # the thread has ended
-            for child in map(int, path.read_text().split()):
-                if not is_ended(child):
-                    yield child
 
 
 def evoframe(directory: Path, arguments: list[str], killer: Killer) -> list[str]:

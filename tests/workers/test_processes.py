@@ -17,14 +17,13 @@ from typing import Any
 import chores
 import pytest
 from chatter import chatter
-from processes import eventually, is_ended, python
+from processes import LIMIT, eventually, is_ended, python
 
 from evoframe import RunError, WorkerError, WorkerProcesses
 from evoframe.workers import processes
 from evoframe.workers.process import Worker
 
 SUPPORT = str(Path(__file__).parents[1] / "support")
-LONG = 120.0  # s; far more than any of these tests takes on a busy computer
 
 
 @pytest.fixture(scope="module")
@@ -36,20 +35,20 @@ def workers() -> Iterator[WorkerProcesses]:
 
 def test_tasks_run_in_other_processes(workers: WorkerProcesses) -> None:
     squares = [workers.schedule(chores.square, [number]) for number in range(8)]
-    assert [future.result(LONG) for future in squares] == [number**2 for number in range(8)]
-    assert workers.schedule(chores.process, [None]).result(LONG) != os.getpid()
+    assert [future.result(LIMIT) for future in squares] == [number**2 for number in range(8)]
+    assert workers.schedule(chores.process, [None]).result(LIMIT) != os.getpid()
 
 
 def test_an_exception_of_a_task_is_raised_in_the_parent(workers: WorkerProcesses) -> None:
     with pytest.raises(ZeroDivisionError, match="item 1"):
-        workers.schedule(chores.fail, [1]).result(LONG)
+        workers.schedule(chores.fail, [1]).result(LIMIT)
 
 
 def test_a_task_beyond_its_time_limit_is_stopped_and_others_complete(workers: WorkerProcesses) -> None:
     late = workers.schedule(chores.hang, ["for long"], 0.3)
     with pytest.raises(TimeoutError):
-        late.result(LONG)
-    assert workers.schedule(chores.square, [3]).result(LONG) == 9
+        late.result(LIMIT)
+    assert workers.schedule(chores.square, [3]).result(LIMIT) == 9
 
 
 @pytest.mark.parametrize(
@@ -66,22 +65,22 @@ def test_a_task_that_ends_its_workers_fails_after_several(
     workers: WorkerProcesses, task: Callable[[int], int], code: int, ending: str, times: int
 ) -> None:
     with pytest.raises(WorkerError) as caught:
-        workers.schedule(task, [code]).result(LONG)
+        workers.schedule(task, [code]).result(LIMIT)
     assert caught.value.item == (code,)
     assert f"ended with {ending};" in caught.value.problem
     assert re.findall(r"\d+", caught.value.problem)[-1] == str(times)
-    assert workers.schedule(chores.square, [3]).result(LONG) == 9
+    assert workers.schedule(chores.square, [3]).result(LIMIT) == 9
 
 
 def test_a_warning_says_that_work_is_repeated(
     workers: WorkerProcesses, caplog: pytest.LogCaptureFixture, tmp_path: Path
 ) -> None:
     assert (
-        workers.schedule(chores.advance_and_end, [tmp_path]).result(LONG) == 9
+        workers.schedule(chores.advance_and_end, [tmp_path]).result(LIMIT) == 9
     )  # it reports before each end
     assert [record for record in caplog.records if record.levelno == logging.WARNING] == []
     with pytest.raises(WorkerError):
-        workers.schedule(chores.end_process, [3]).result(LONG)
+        workers.schedule(chores.end_process, [3]).result(LIMIT)
     [warning] = [record for record in caplog.records if record.levelno == logging.WARNING]
     assert "exit code 3" in warning.message
 
@@ -104,16 +103,16 @@ def test_workers_that_are_killed_before_they_are_ready_are_replaced(started: Sim
     with contextlib.closing(WorkerProcesses(2)) as made:
         sizes = [made.schedule(chores.size, [bytes(200_000)]) for _ in range(20)]  # exceeds buffers
         for _ in range(30):
-            os.kill(started.get(timeout=LONG), signal.SIGKILL)
-        assert [future.result(LONG) for future in sizes] == [200_000] * 20
+            os.kill(started.get(timeout=LIMIT), signal.SIGKILL)
+        assert [future.result(LIMIT) for future in sizes] == [200_000] * 20
 
 
 def test_an_idle_worker_that_is_killed_is_replaced(started: SimpleQueue[int]) -> None:
     with contextlib.closing(WorkerProcesses(1)) as made:
         for number in range(3):
-            assert made.schedule(chores.square, [number]).result(LONG) == number**2
-            os.kill(started.get(timeout=LONG), signal.SIGKILL)
-        assert started.get(timeout=LONG) > 0  # without any further task
+            assert made.schedule(chores.square, [number]).result(LIMIT) == number**2
+            os.kill(started.get(timeout=LIMIT), signal.SIGKILL)
+        assert started.get(timeout=LIMIT) > 0  # without any further task
 
 
 def test_work_of_others_is_not_affected_by_a_worker_that_is_killed_while_it_reports() -> None:
@@ -122,13 +121,13 @@ def test_work_of_others_is_not_affected_by_a_worker_that_is_killed_while_it_repo
         tasks = [made.schedule(chatter, [number], on_report=reports.put) for number in range(2)]
         killed: set[int] = set()
         while len(killed) < 8:
-            number, process = reports.get(timeout=LONG)
+            number, process = reports.get(timeout=LIMIT)
             if number == 0 and process not in killed:
                 os.kill(process, signal.SIGKILL)
                 killed.add(process)
         made.request_stop()
         made.request_stop()
-        assert [task.result(LONG) for task in tasks] == [0, 1]
+        assert [task.result(LIMIT) for task in tasks] == [0, 1]
     of_the_other = {process for number, process in iter_now(reports) if number == 1}
     assert len(of_the_other) <= 1
 
@@ -140,23 +139,23 @@ def iter_now(queue: SimpleQueue[tuple[int, int]]) -> Iterator[tuple[int, int]]:
 
 def test_a_worker_that_is_stopped_is_killed_at_its_time_limit(started: SimpleQueue[int]) -> None:
     with contextlib.closing(WorkerProcesses(1)) as made:
-        assert made.schedule(chores.square, [2]).result(LONG) == 4
-        os.kill(process := started.get(timeout=LONG), signal.SIGSTOP)
+        assert made.schedule(chores.square, [2]).result(LIMIT) == 4
+        os.kill(process := started.get(timeout=LIMIT), signal.SIGSTOP)
         for argument in (b"", bytes(5_000_000)):  # the second cannot even be sent
             late = made.schedule(chores.size, [argument], 0.2)
             with pytest.raises(TimeoutError):
-                late.result(LONG)
+                late.result(LIMIT)
             eventually(functools.partial(is_ended, process), "the stopped worker was not killed")
-            assert made.schedule(chores.square, [3]).result(LONG) == 9
-            os.kill(process := started.get(timeout=LONG), signal.SIGSTOP)
+            assert made.schedule(chores.square, [3]).result(LIMIT) == 9
+            os.kill(process := started.get(timeout=LIMIT), signal.SIGSTOP)
 
 
 def test_a_worker_that_is_stopped_for_a_while_continues(started: SimpleQueue[int]) -> None:
     with contextlib.closing(WorkerProcesses(1)) as made:
         squares = [made.schedule(chores.square, [number]) for number in range(10)]
-        os.kill(process := started.get(timeout=LONG), signal.SIGSTOP)
+        os.kill(process := started.get(timeout=LIMIT), signal.SIGSTOP)
         threading.Timer(0.3, os.kill, [process, signal.SIGCONT]).start()
-        assert [future.result(LONG) for future in squares] == [number**2 for number in range(10)]
+        assert [future.result(LIMIT) for future in squares] == [number**2 for number in range(10)]
     assert started.empty()
 
 
@@ -177,7 +176,7 @@ def test_workers_that_never_start_are_reported_with_the_cause(
         tasks = [made.schedule(chores.square, [number]) for number in range(3)]
         for task in tasks:
             with pytest.raises(RunError, match="cannot be started") as caught:
-                task.result(LONG)
+                task.result(LIMIT)
             assert cause in caught.value.problem
         assert not made.active
         with pytest.raises(RunError, match="shut down"):
@@ -214,7 +213,7 @@ def test_a_limit_that_prevents_all_starts_is_an_error(tmp_path: Path, limit: str
 def test_text_that_workers_print_goes_to_standard_error(capfd: pytest.CaptureFixture[str]) -> None:
     with contextlib.closing(WorkerProcesses(1, chores.write, [2, b"initializer "])) as made:
         for descriptor in (1, 2):
-            made.schedule(chores.write, [descriptor, b"to %d " % descriptor]).result(LONG)
+            made.schedule(chores.write, [descriptor, b"to %d " % descriptor]).result(LIMIT)
     assert capfd.readouterr() == ("", "initializer to 1 to 2 ")
 
 
@@ -261,7 +260,7 @@ def test_tasks_without_a_result_fail_when_the_pool_is_closed() -> None:
     assert not made.active
     for task in tasks:
         with pytest.raises(RunError, match="shut down"):
-            task.result(LONG)
+            task.result(LIMIT)
     made.close()
     WorkerProcesses(1).close()  # never used
 
@@ -271,8 +270,8 @@ def test_a_cancelled_task_is_not_executed(tmp_path: Path) -> None:
         first = made.schedule(chores.square, [2])
         second = made.schedule(chores.mark, [tmp_path / "second"])
         assert second.cancel()
-        assert made.schedule(chores.square, [3]).result(LONG) == 9
-        assert first.result(LONG) == 4
+        assert made.schedule(chores.square, [3]).result(LIMIT) == 9
+        assert first.result(LIMIT) == 4
     assert not (tmp_path / "second").exists()
 
 
@@ -282,14 +281,14 @@ def test_a_callback_that_fails_fails_its_task_only() -> None:
 
     with contextlib.closing(WorkerProcesses(1)) as made:
         with pytest.raises(KeyError, match="callback"):
-            made.schedule(chatter, [1], on_report=refuse).result(LONG)
-        assert made.schedule(chores.square, [3]).result(LONG) == 9
+            made.schedule(chatter, [1], on_report=refuse).result(LIMIT)
+        assert made.schedule(chores.square, [3]).result(LIMIT) == 9
 
 
 def test_a_process_is_initialized_before_its_first_task(tmp_path: Path) -> None:
     made = WorkerProcesses(1, chores.mark, [tmp_path / "prepared"])
     try:
-        assert made.schedule(chores.square, [2]).result(LONG) == 4
+        assert made.schedule(chores.square, [2]).result(LIMIT) == 4
         assert (tmp_path / "prepared").exists()
     finally:
         made.close()

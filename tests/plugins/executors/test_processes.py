@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -12,7 +11,7 @@ from pathlib import Path
 
 import chores
 import pytest
-from processes import eventually, surroundings
+from processes import Program, ended, eventually, surroundings
 
 from evoframe import ExecutorRun, RunError, WorkerError
 from evoframe.testing import ExecutorContract
@@ -164,16 +163,12 @@ def main():
 """
 
 
-def start(program: str, directory: Path) -> subprocess.Popen[str]:
+def start(program: str, directory: Path) -> Program:
     script = directory / "program.py"
     script.write_text(program)
     paths = os.pathsep.join(filter(None, sys.path))
-    return subprocess.Popen(
-        [sys.executable, str(script), str(directory / "process")],
-        env={**surroundings(), "PYTHONPATH": paths},
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    command = [sys.executable, str(script), str(directory / "process")]
+    return Program(command, env={**surroundings(), "PYTHONPATH": paths})
 
 
 @pytest.mark.parametrize("chore", ["write_process_and_hang", "keep_the_lock"])
@@ -189,8 +184,7 @@ def test_workers_end_with_the_process_that_started_them(tmp_path: Path, chore: s
 
 def test_a_program_that_starts_workers_when_imported_fails_with_advice(tmp_path: Path) -> None:
     with start(PROGRAM.replace("CHORE", "write_process_and_hang") + "\nmain()\n", tmp_path) as program:
-        stderr = program.communicate(timeout=120)[1]
-    assert program.returncode == 1
-    message = stderr.splitlines()[-1]
+        assert ended(program) == 1
+    message = program.log[-1].rstrip()
     assert message.startswith("evoframe.errors.RunError: executor: ")
     assert "if __name__ == '__main__':" in message
