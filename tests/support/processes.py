@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from types import TracebackType
 from typing import Any
 
 LIMIT = 300.0
@@ -81,9 +82,14 @@ class Program(subprocess.Popen[str]):
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
-    def __exit__(self, *error: object) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
         self._reader.join(LIMIT)
-        super().__exit__(*error)
+        super().__exit__(kind, error, traceback)
 
     def _read(self) -> None:
         assert self.stderr is not None
