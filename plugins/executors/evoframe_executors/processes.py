@@ -119,7 +119,10 @@ class _ProcessWorkers:
     def _schedule(self, call: Call) -> Future[Answer]:
         if not self._pool.active:  # it could not start workers
             self._restart()
-        return self._pool.schedule(execute, [call], self._limit)
+        try:
+            return self._pool.schedule(execute, [call], self._limit)
+        except RunError as error:  # no more threads or files
+            raise RunError(error.problem, key="executor") from error
 
     def _restart(self) -> None:
         self.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing.spawn
 import os
 import signal
@@ -19,7 +20,7 @@ __all__ = ["StartError", "Worker", "main_program"]
 
 _START_LIMIT = 120.0  # s; far more than a start takes on a busy computer
 _GRACE = 5.0  # s; time to end after the connection is closed, before the process is killed
-_COLLECTED = 65536  # latest bytes of the output during a start
+_COLLECTED = 16384  # latest bytes of the output during a start
 _SHOWN = 2000  # latest characters of a failed start's output, in its error
 
 # Unlike sys.path of the option -c, that of the parent does not begin with the working directory.
@@ -113,8 +114,9 @@ class Worker:
             self.kill()
             raise StartError(answer.cause)
         self._collected.wait()  # the process has stopped writing to it
-        if self._output:
-            os.write(2, self._output)  # such as times of imports, with -X importtime
+        if self._output:  # such as times of imports, with -X importtime
+            with contextlib.suppress(OSError):  # a broken log does not end a run
+                os.write(2, self._output)
 
     def execute(
         self,
@@ -167,8 +169,8 @@ class Worker:
     def _await_end(self) -> None:
         assert self._process.stdin is not None  # noqa: S101 - a pipe
         assert self._process.stderr is not None  # noqa: S101 - a pipe
-        with self._process.stderr as output:
-            while piece := os.read(output.fileno(), _COLLECTED):
+        with contextlib.suppress(MemoryError), self._process.stderr as output:  # the end matters more
+            while piece := os.read(output.fileno(), 4096):
                 self._output = (self._output + piece)[-_COLLECTED:]
         self._collected.set()
         self._process.wait()
