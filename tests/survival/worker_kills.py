@@ -41,7 +41,10 @@ generations = 20
 
 _STALL = 20.0  # s; longest time in which a killed worker may remain without a replacement on a busy computer
 _END = 120.0  # s; longest time that a program may take after the last kill
-_OWN = re.compile(r"evoframe\.workers\.processes: .* ended with the signal SIGKILL; its work is repeated, .*")
+_NUMBER = re.compile(r"\d[\d.,]*(e-?\d+)?")
+_PASSING = re.compile(  # lines of a log that depend on time, or report kills
+    r"$|turn |.* runs done|evoframe\.workers\.processes: .* ended with the signal SIGKILL; its work is repeated"
+)
 
 
 @attrs.define
@@ -107,7 +110,8 @@ def evoframe(directory: Path, arguments: list[str], killer: Killer) -> list[str]
     text = log.read_text()
     if program.returncode != 0:
         raise SystemExit(f"{arguments[0]} ended with {program.returncode}:\n{text}")
-    return sorted({re.sub(r"\d[\d.,]*", "#", line) for line in re.sub(_OWN, "", text).splitlines() if line})
+    lines = {re.sub(_NUMBER, "#", line) for line in text.splitlines() if not re.match(_PASSING, line)}
+    return sorted(lines)
 
 
 def compare(base: Path, arguments: list[str], killer: Killer) -> int:
