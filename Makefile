@@ -9,9 +9,9 @@ SOURCES := pyproject.toml setup.py extensions.py $(C) $(wildcard lib*/*/*.py)
 PARALLEL := --numprocesses auto --dist worksteal
 
 LOWEST := $(VENV)-lowest
-LONG   := interpreters latex
+LONG   := interpreters kills latex
 
-.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters latex clean
+.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters kills latex clean
 
 ## run: run the published experiment (preset paper)
 run: $(VENV)/installed
@@ -60,6 +60,11 @@ sanitize: $(VENV)/developing
 ## interpreters: run the tests with each other installed version of Python
 interpreters: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
+
+## kills: kill hundreds of workers while they start, on a quiet and on a busy computer
+kills: $(VENV)/developing
+	$(BIN)/python tests/survival/worker_kills.py --kills 400
+	$(BIN)/python tests/survival/worker_kills.py --kills 400 --seed 1000 --busy 2
 
 ## latex: typeset tables of reports
 latex: $(VENV)/developing

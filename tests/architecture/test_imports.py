@@ -87,20 +87,12 @@ class Unusual:
 
 
 UNUSUAL: Mapping[str, Unusual] = {
-    "concurrent.futures.process": Unusual(
-        "provides the exception for broken pools",
-        {
-            "plugins/executors/evoframe_executors/processes.py",
-            "src/evoframe/study/pool.py",
-            "src/evoframe/workers/processes.py",
-        },
-    ),
     "configparser": Unusual(
         "neat-python reads its options with it; the text is generated from a frozen class",
         {"plugins/evolvers/evoframe_evolvers/cppn/genomes.py"},
     ),
     "fcntl": Unusual(
-        "requests a signal from Linux when the parent process ends", {"src/evoframe/workers/processes.py"}
+        "requests a signal from Linux when the parent process ends", {"src/evoframe/workers/child.py"}
     ),
     "importlib": Unusual(
         "loads evoframe's own modules on demand, and plugins that the user installed or named",
@@ -110,21 +102,28 @@ UNUSUAL: Mapping[str, Unusual] = {
             "src/evoframe/registry/discovery.py",
         },
     ),
-    "multiprocessing": Unusual(
-        "pickles objects between processes of one program, never from a file or a network",
-        {"src/evoframe/cli/signals.py", "src/evoframe/study/pool.py", "src/evoframe/workers/processes.py"},
+    "multiprocessing.connection": Unusual(
+        "waits for connections to be ready, and reads none", {"src/evoframe/workers/child.py"}
     ),
     "multiprocessing.reduction": Unusual(
-        "pickles the messages between a run and its workers, as multiprocessing does",
-        {"plugins/executors/evoframe_executors/worker.py"},
+        "pickles the messages between a program and its workers, never from a file or a network",
+        {"plugins/executors/evoframe_executors/worker.py", "src/evoframe/workers/channel.py"},
     ),
-    "pebble": Unusual(
-        "provides pools of processes that can be stopped; pickles as multiprocessing does",
+    "multiprocessing.spawn": Unusual(
+        "lets workers import the main program, as multiprocessing does",
+        {"src/evoframe/workers/child.py", "src/evoframe/workers/process.py"},
+    ),
+    "socket": Unusual(
+        "connects a program with its workers by pairs of sockets without a name",
         {
-            "plugins/executors/evoframe_executors/processes.py",
-            "src/evoframe/study/pool.py",
-            "src/evoframe/workers/processes.py",
+            "src/evoframe/workers/channel.py",
+            "src/evoframe/workers/child.py",
+            "src/evoframe/workers/process.py",
         },
+    ),
+    "subprocess": Unusual(
+        "starts workers: the running interpreter, with a program of its own",
+        {"src/evoframe/workers/process.py"},
     ),
     "sqlite3": Unusual(
         "opens databases for reading with an untrusted schema, and attaches no others",

@@ -86,10 +86,10 @@ def test_play_starts_at_the_current_time(run_page: Path, opened: Callable[..., A
             new MutationObserver(note).observe(seconds, { childList: true });
         }"""
     )
-    for _ in range(3):
+    for number in range(1, 4):
         set_slider(page, "time", 0)
         page.get_by_role("button", name="play").click()
-        page.wait_for_timeout(200)
+        page.wait_for_function("(count) => window.times.length >= count", arg=4 * number)  # frames, not time
         page.get_by_role("button", name="pause").click()
     times = page.evaluate("window.times")
     assert len(times) > 6

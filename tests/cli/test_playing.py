@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import signal
-import subprocess
 from pathlib import Path
 
 import toys
-from processes import Evoframe, started, told
+from processes import Evoframe, Program, ended, started, told
 
 import evoframe as package
 
 
-def slow_run(directory: Path, *settings: str) -> contextlib.AbstractContextManager[subprocess.Popen[str]]:
+def slow_run(directory: Path, *settings: str) -> contextlib.AbstractContextManager[Program]:
     """Start a run of toys that takes its time."""
     (directory / "toy.toml").write_text(toys.CONFIGURATION)
     options = [option for setting in settings for option in ("--set", setting)]
@@ -81,7 +80,7 @@ def test_an_interrupt_of_the_verification_leaves_the_complete_run(tmp_path: Path
         told(process, "verifying")
         process.send_signal(signal.SIGINT)
         assert "evoframe verify here" in told(process, "Interrupted")
-        assert process.wait(60) == 130
+        assert ended(process) == 130
     assert package.load_run(tmp_path / "here").summary()["turns"] == 8
 
 
@@ -90,7 +89,7 @@ def test_interrupt_stops_after_the_turn_and_keeps_it(tmp_path: Path) -> None:
         told(process, "turn 0")
         process.send_signal(signal.SIGINT)
         told(process, "Interrupted")
-        assert process.wait(60) == 130
+        assert ended(process) == 130
     turns = package.load_run(tmp_path / "here").turns()
     assert 2 <= len(turns) < 200
 
@@ -102,5 +101,5 @@ def test_a_second_interrupt_stops_at_once(tmp_path: Path) -> None:
         told(process, "Ctrl-C")
         process.send_signal(signal.SIGINT)
         told(process, "Interrupted")
-        assert process.wait(60) == 130
+        assert ended(process) == 130
     assert package.load_run(tmp_path / "here").turns() == []

@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 import pytest
 import toys
-from processes import Evoframe, python, started, told
+from processes import Evoframe, ended, python, started, told
 
 import evoframe as package
 from evoframe import cli
@@ -143,7 +143,7 @@ def test_an_interrupt_of_any_command_is_no_failure(tmp_path: Path) -> None:
         told(process, "variants")
         process.send_signal(signal.SIGINT)
         told(process, "Interrupted")
-        assert process.wait(60) == 130
+        assert ended(process) == 130
 
 
 FAULTS = [

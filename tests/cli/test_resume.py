@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import signal
-from collections.abc import Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
+import pausing
 import pytest
 import toys
-from processes import Evoframe, python, started, told
+from processes import Evoframe, Program, ended, python, started, told
 from recorded import assert_same_result
 
 from evoframe import load_run
 
-_SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
-_SLOWER = ("--set", "simulator={name='toy-slow', delay=0.1}")  # lasts until another process has started
 _HANGING = ("--set", "simulator={name='toy-hanging', fixed='fixed'}")
 
 
@@ -25,8 +25,19 @@ def toy(tmp_path: Path) -> list[str]:
     return ["-p", toys.__file__]
 
 
-def undisturbed(evoframe: Evoframe, toy: list[str], directory: Path, options: Sequence[str] = _SLOW) -> Path:
-    assert evoframe("run", *toy, "toy.toml", *options, "--out", "undisturbed").returncode == 0
+@contextlib.contextmanager
+def paused(directory: Path, toy: list[str]) -> Iterator[Program]:
+    """Start a run that waits after its first turn until the file ``pause`` is removed."""
+    (directory / "pause").touch()
+    with started(
+        directory, "run", *toy, "-p", pausing.__file__, "-v", "toy.toml", "--out", "left"
+    ) as process:
+        told(process, "turn 0")
+        yield process
+
+
+def undisturbed(evoframe: Evoframe, toy: list[str], directory: Path) -> Path:
+    assert evoframe("run", *toy, "toy.toml", "--out", "undisturbed").returncode == 0
     return directory / "undisturbed"
 
 
@@ -34,13 +45,13 @@ def undisturbed(evoframe: Evoframe, toy: list[str], directory: Path, options: Se
 def test_goes_on_after_a_signal_that_stopped_it_after_its_turn(
     evoframe: Evoframe, toy: list[str], tmp_path: Path, number: signal.Signals, code: int
 ) -> None:
-    with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOW, "--out", "left") as process:
-        told(process, "turn 0")
+    with paused(tmp_path, toy) as process:
         process.send_signal(number)
         told(process, "Stopping")
+        (tmp_path / "pause").unlink()
         line = told(process, "Interrupted")
-        assert line.rstrip().endswith(f": evoframe resume left -p {toys.__file__}")
-        assert process.wait(60) == code
+        assert line.rstrip().endswith(f": evoframe resume left -p {toys.__file__} -p {pausing.__file__}")
+        assert ended(process) == code
     resumed = evoframe("resume", *toy, "left")
     assert resumed.returncode == 0, resumed.stderr
     assert "best pair" in resumed.stdout
@@ -50,14 +61,14 @@ def test_goes_on_after_a_signal_that_stopped_it_after_its_turn(
 def test_a_second_process_is_refused_and_the_first_goes_on(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:
-    with started(tmp_path, "run", *toy, "-v", "toy.toml", *_SLOWER, "--out", "left") as process:
-        told(process, "turn 0")
+    with paused(tmp_path, toy) as process:
         second = evoframe("resume", *toy, "left")
         assert second.returncode == 2
         assert second.stderr.splitlines()[-1].startswith("Error: left: ")
         assert "another process" in second.stderr
-        assert process.wait(60) == 0
-    assert_same_result(undisturbed(evoframe, toy, tmp_path, _SLOWER), tmp_path / "left")
+        (tmp_path / "pause").unlink()
+        assert ended(process) == 0
+    assert_same_result(undisturbed(evoframe, toy, tmp_path), tmp_path / "left")
 
 
 def test_a_finished_run_is_said_to_be_finished(evoframe: Evoframe, toy: list[str], tmp_path: Path) -> None:
@@ -124,7 +135,7 @@ def test_where_nothing_can_be_written_nothing_is_begun(
 def test_a_thread_that_hangs_does_not_keep_the_program_from_ending(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:
-    executor = ["--set", "executor={name='threads', batch_time_limit=0.5}"]
+    executor = ["--set", "executor={name='threads', batch_time_limit=2.0}"]
     hung = evoframe("run", *toy, "toy.toml", *_HANGING, *executor, "--out", "left")
     assert hung.returncode == 1
     message, todo, plugins = hung.stderr.splitlines()[-3:]
@@ -147,7 +158,7 @@ def test_a_second_signal_does_not_wait_for_what_hangs(toy: list[str], tmp_path: 
         for word in ("Stopping", "Interrupted"):
             process.send_signal(signal.SIGINT)
             told(process, word)
-        assert process.wait(60) == 130
+        assert ended(process) == 130
 
 
 def test_what_cannot_be_written_is_said_whatever_lies_there(

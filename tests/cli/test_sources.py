@@ -6,10 +6,13 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pausing
 import pytest
 import toys
-from processes import Evoframe
+from processes import Evoframe, started, told
 from toy_study import STUDY
+
+from evoframe import load_run
 
 TOYS = ("-p", toys.__file__)
 
@@ -61,6 +64,72 @@ def test_a_directory_continues_a_study_that_was_interrupted(evoframe: Evoframe, 
     assert again.returncode == 0, again.stderr
     assert "2/2 runs" in again.stderr
     assert (first / "champion.json").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        ("resume RUN", 2),
+        ("report RUN", 2),
+        ("report s", 2),
+        ("verify RUN", 2),
+        ("simulate RUN", 2),
+        ("simulate s", 2),
+        ("export RUN --to toy --out champion.toy", 2),
+        ("robustness RUN", 2),
+        ("robustness s", 2),
+        ("study s", 2),
+        ("doctor RUN", 1),
+    ],
+)
+def test_a_run_whose_configuration_was_edited_is_refused_with_the_difference(
+    evoframe: Evoframe, study: Path, tmp_path: Path, words: str, code: int
+) -> None:
+    config = min(study.glob("*/*/00/config.toml"))
+    config.write_text(config.read_text().replace("generations = 4", "generations = 5"))
+    run = str(config.parent.relative_to(tmp_path))
+    command, *arguments = words.replace("RUN", run).split()
+    refused = evoframe(command, *TOYS, *arguments)
+    assert refused.returncode == code, refused.stdout + refused.stderr
+    assert "run.generations: 4 recorded, 5 in config.toml" in refused.stdout + refused.stderr
+    assert f"{run}/config.toml" in refused.stdout + refused.stderr
+
+
+PLUGIN = """
+import attrs
+from evoframe import hookimpl
+
+@attrs.frozen
+class Extreme:
+    domain = (-1e100, 1e100)
+    def check(self, n): pass
+    def aggregate(self, scores): return float(max(scores))
+
+@hookimpl
+def evoframe_aggregators():
+    return {"extreme": Extreme}
+"""
+
+
+def test_a_local_plugin_that_was_edited_is_refused_until_it_is_allowed(
+    evoframe: Evoframe, study: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "mine.py").write_text(PLUGIN)
+    options = (*TOYS, "-p", "mine.py")
+    (tmp_path / "pause").touch()
+    arguments = ["-p", pausing.__file__, "-v", "toy.toml", "--set", "aggregator=extreme", "--out", "r"]
+    with started(tmp_path, "run", *options, *arguments) as process:
+        told(process, "turn 0")
+    (tmp_path / "mine.py").write_text(PLUGIN.replace("max", "min"))
+    refused = evoframe("resume", *options, "r")
+    assert refused.returncode == 2
+    assert "\n  local_plugins.mine: 'sha256:" in refused.stderr
+    checked = evoframe("doctor", *options, "r")
+    assert "local_plugins.mine: 'sha256:" in checked.stdout + checked.stderr
+    allowed = evoframe("resume", *options, "r", "--allow-different-versions")
+    assert allowed.returncode == 0, allowed.stderr
+    [resumed] = load_run(tmp_path / "r").resumes()
+    assert "local_plugins.mine" in resumed["differences"]
 
 
 @pytest.mark.parametrize(

@@ -6,15 +6,15 @@ import csv
 import os
 import re
 import signal
-import time
 from pathlib import Path
 
+import pausing
 import pytest
 import toys
-from processes import Evoframe, on_a_terminal, started, told
+from processes import Evoframe, children, ended, eventually, is_ended, on_a_terminal, started, told
 from toy_study import STUDY
 
-from evoframe import load_run
+from evoframe import load_run, open_run
 from evoframe.workers.cores import available_cores
 
 SLOW = ("--set", "simulator={name='toy-slow', delay=0.02}")
@@ -156,52 +156,58 @@ def test_that_is_interrupted_ends_with_the_same_tables(
     arguments = ["study", *toy, "--set", "runs=2"]
     assert evoframe(*arguments, "--out", "undisturbed").returncode == 0
     for _ in range(2):
-        with started(tmp_path, *arguments, "--out", "left") as process:
+        with started(tmp_path, *arguments, "--workers", "1", "--out", "left") as process:  # 8 runs in a row
             told(process, "finished, best pair")
-            time.sleep(0.1)
             process.send_signal(number)
             if number == signal.SIGINT:
                 told(process, "Stopping")
                 told(process, "Interrupted")
-                assert process.wait(60) == 130
+                assert ended(process) == 130
     assert evoframe(*arguments, "--out", "left").returncode == 0
     assert tables(tmp_path / "left") == tables(tmp_path / "undisturbed")
 
 
-def test_a_run_whose_process_is_killed_has_failed_and_the_others_go_on(
+def test_a_run_whose_process_is_killed_is_resumed_by_another(toy: list[str], tmp_path: Path) -> None:
+    arguments = ["study", *toy, "-p", pausing.__file__, "--workers", "1", "--set", "runs=1", "--out", "s"]
+    (tmp_path / "pause").touch()
+    with started(tmp_path, *arguments) as process:
+        eventually(lambda: any(map(has_saved_a_turn, (tmp_path / "s").glob("*/*/00"))), "no turn was saved")
+        [worker] = children(process.pid)
+        os.kill(worker, signal.SIGKILL)
+        eventually(lambda: set(children(process.pid)) - {worker}, "the worker was not replaced")
+        (tmp_path / "pause").unlink()
+        assert ended(process) == 0, process.log
+    resumes = [load_run(path.parent).resumes() for path in (tmp_path / "s").glob("*/*/00/config.toml")]
+    assert sorted(map(len, resumes)) == [0, 0, 0, 1]
+
+
+def has_saved_a_turn(directory: Path) -> bool:
+    if not (directory / "config.toml").exists():
+        return False
+    with open_run(directory) as run:
+        return run.begun and run.last_turn() is not None
+
+
+def test_a_run_that_ends_its_workers_has_failed_and_the_others_go_on(
     evoframe: Evoframe, toy: list[str], tmp_path: Path
 ) -> None:
-    arguments = ["study", *toy, "--workers", "1", "--set", "runs=1", "--out", "s"]
-    with started(tmp_path, *arguments) as process:
-        until = time.monotonic() + 60
-        while not list((tmp_path / "s").glob("*/*/00/run.db")) and time.monotonic() < until:
-            time.sleep(0.01)
-        for child in children(process.pid):
-            if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes():
-                os.kill(child, signal.SIGKILL)
-        assert "SIGKILL" in told(process, "failed")
-        assert process.wait(60) == 1
+    fatal = 'grid.simulator=["toy-product", {name="toy-fatal", fixed="fixed"}]'
+    arguments = ["study", *toy, "--workers", "1", "--set", "runs=1", "--set", fatal, "--out", "s"]
+    failed = evoframe(*arguments)
+    assert failed.returncode == 1
+    assert failed.stderr.count("exit code 3; 5 of them") == 4  # when they fail, and at the end
+    assert "2 runs failed; to repeat, add --retry" in failed.stderr
+    (tmp_path / "fixed").touch()
     assert evoframe(*arguments, "--retry").returncode == 0
 
 
 def test_workers_end_with_the_study(toy: list[str], tmp_path: Path) -> None:
     hanging = 'grid.simulator=[{name="toy-hanging", beyond=-1.0, fixed="fixed"}]'
     with started(tmp_path, "study", *toy, "--set", hanging, "--out", "left") as process:
-        until = time.monotonic() + 60
-        while len(children(process.pid)) < 2 and time.monotonic() < until:
-            time.sleep(0.05)
+        eventually(lambda: len(children(process.pid)) == available_cores(), "not all workers started")
         workers = children(process.pid)
-        assert len(workers) >= 2
         process.kill()
-    until = time.monotonic() + 60
-    while any(Path(f"/proc/{pid}").exists() for pid in workers) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not [pid for pid in workers if Path(f"/proc/{pid}").exists()]
-
-
-def children(pid: int) -> list[int]:
-    listed = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-    return [int(child) for child in listed]
+    eventually(lambda: all(map(is_ended, workers)), "a worker still runs")
 
 
 def test_runs_at_which_another_process_is_are_left_to_it(
@@ -210,7 +216,7 @@ def test_runs_at_which_another_process_is_are_left_to_it(
     with started(tmp_path, "study", *toy, "--workers", "1", "--out", "s") as process:
         told(process, "finished, best pair")
         other = evoframe("study", *toy, "--workers", "1", "--out", "s")
-        code = process.wait(120)
+        code = ended(process)
     assert 0 in (code, other.returncode)  # 1 for the one that left the last run to the other
     assert "failed" not in other.stderr
     assert len(list((tmp_path / "s").glob("*/*/0?/champion.json"))) == 12
@@ -224,10 +230,13 @@ def test_processes_that_start_together_divide_the_runs_among_them(
 ) -> None:
     arguments = ["study", *toy, "--workers", "1", "--out", "s"]
     with started(tmp_path, *arguments) as one, started(tmp_path, *arguments) as other:
-        said = other.communicate(timeout=120)[1] + one.communicate(timeout=120)[1]
+        assert {ended(other), ended(one)} <= {0, 1}, [
+            one.log,
+            other.log,
+        ]  # 1: it left the last run to the other
+    said = "".join(one.log + other.log)
     assert "failed" not in said
     assert 0 in (one.returncode, other.returncode), said
-    assert {one.returncode, other.returncode} <= {0, 1}, said  # 1: it left the last run to the other
     assert not list((tmp_path / "s").rglob("failure.json"))
     assert len((tmp_path / "s" / "rows.csv").read_text().splitlines()) == 13
     for config in (tmp_path / "s").glob("*/*/0?/config.toml"):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import toys
 from hypothesis import given, strategies as st
+from processes import LIMIT
 
 from evoframe import Design, Outcome, Record
 from evoframe.errors import ComponentError
@@ -77,7 +78,7 @@ def test_designs_are_decoded_while_others_are_simulated() -> None:
 
     def made() -> Iterator[Design]:
         yield from (design(a, 1) for a in range(20))
-        assert started.wait(timeout=10)
+        assert started.wait(LIMIT)
         yield design(20, 1)
 
     scorer = evaluator(Signaling(), workers=2)

@@ -8,7 +8,7 @@ import threading
 from pathlib import Path
 
 import pytest
-from processes import surroundings
+from processes import LIMIT, surroundings
 
 from evoframe import InputError
 from evoframe.errors import LockedError
@@ -94,10 +94,10 @@ def test_a_waiting_thread_acquires_the_lock_after_its_release(tmp_path: Path) ->
     thread = threading.Thread(target=second)
     with locked_after_others(tmp_path / "a.lock"):
         thread.start()
-        assert has_begun.wait(10)
+        assert has_begun.wait(LIMIT)
         thread.join(0.2)
         order.append("first")
-    thread.join(10)
+    thread.join(LIMIT)
     assert order == ["first", "second"]
 
 

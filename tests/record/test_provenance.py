@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import attrs
 import numpy as np
 import toys
 
 import evoframe
-from evoframe import Chosen, RunConfig, Source
+from evoframe import Chosen, Run, RunConfig, Source
 from evoframe.documents.trees import as_read, differences
-from evoframe.record.provenance import provenance_of
+from evoframe.record.provenance import changed_provenance, provenance_of
 
 Load = Callable[..., RunConfig]
 
@@ -51,6 +52,37 @@ def test_is_the_same_each_time_and_after_it_was_read(toy_config: Load) -> None:
 def test_has_the_entries_of_components(toy_config: Load) -> None:
     config = simulated_by(toy_config(), Versioned())
     assert provenance_of(config)["libraries"]["libtoy"] == "1.2"
+
+
+def test_has_the_checksums_of_local_plugins_that_determine_the_result(toy_config: Load) -> None:
+    config = toy_config()
+    mine = Source("mine", "local", "mine", "sha256:ab")
+    other = Source("workers", "local", "workers", "sha256:cd")
+    local = attrs.evolve(
+        config,
+        aggregator=attrs.evolve(config.aggregator, source=mine),
+        executor=attrs.evolve(config.executor, source=other),
+    )
+    assert provenance_of(local)["local_plugins"] == {"mine": "sha256:ab"}
+    assert "local_plugins" not in provenance_of(config)
+
+
+def test_a_run_without_checksums_of_local_plugins_is_compared_without_them(
+    toy_config: Load, tmp_path: Path
+) -> None:
+    config = toy_config()
+    mine = Source("mine", "local", "mine", "sha256:ab")
+    local = attrs.evolve(config, aggregator=attrs.evolve(config.aggregator, source=mine))
+    then = provenance_of(local)
+    for recorded, changes in (
+        (then, []),
+        (
+            {**then, "local_plugins": {"mine": "sha256:cd"}},
+            ["local_plugins.mine: 'sha256:cd' then, 'sha256:ab' now"],
+        ),
+        ({key: value for key, value in then.items() if key != "local_plugins"}, []),
+    ):
+        assert changed_provenance(Run(tmp_path, {"provenance": recorded}), local) == changes
 
 
 def test_another_version_of_a_plugin_or_of_its_library_is_a_difference(toy_config: Load) -> None:

@@ -10,7 +10,19 @@ from pathlib import Path
 import pytest
 from turns import CONFIG, begun
 
-from evoframe import BestPair, Design, InputError, Run, RunConfig, Turn, Workload, load_run, open_run, run
+from evoframe import (
+    BestPair,
+    ConfigurationError,
+    Design,
+    InputError,
+    Run,
+    RunConfig,
+    Turn,
+    Workload,
+    load_run,
+    open_run,
+    run,
+)
 from evoframe.files.locks import acquire_lock
 from evoframe.record.run import open_unchecked
 from evoframe.record.store import Store
@@ -65,6 +77,66 @@ def left(store: Store) -> Path:
     """The directory of a run that was interrupted after its first turn."""
     store.close()
     return store.directory
+
+
+EDITED = (
+    ("generations = 4", "generations = 5", "run.generations: 4 recorded, 5 in config.toml"),
+    ("size = 6", "size = 6.5", "populations.a.size: 6 recorded, 6.5 in config.toml"),
+    ("generations = 4\n", "", "run.generations: 4 recorded, not set in config.toml"),
+    ("generations = 4", "generations = 4\nlonger = 1", "run.longer: not set recorded, 1 in config.toml"),
+    (
+        'name = "toy-mean"',
+        'name = "toy-other"',
+        "aggregator.name: 'toy-mean' recorded, 'toy-other' in config.toml",
+    ),
+)
+
+
+class TestEditedConfiguration:
+    @pytest.fixture
+    def finished(self, toy_config: Load, tmp_path: Path) -> Path:
+        return run(toy_config(), out=tmp_path / "run").directory
+
+    @pytest.mark.parametrize(("before", "after", "line"), EDITED)
+    def test_is_refused_with_the_differences(
+        self, finished: Path, before: str, after: str, line: str
+    ) -> None:
+        path = finished / "config.toml"
+        assert path.read_text().count(before) == 1
+        path.write_text(path.read_text().replace(before, after))
+        for read in (load_run, lambda directory: open_run(directory).__enter__()):
+            with pytest.raises(ConfigurationError) as caught:
+                read(finished)
+            assert caught.value.source == str(path)
+            assert caught.value.problem.splitlines()[1:-1] == [f"  {line}"]
+        with open_unchecked(finished) as opened:
+            opened.check_database()
+            with pytest.raises(ConfigurationError):
+                opened.check_configuration()
+
+    @pytest.mark.parametrize(
+        ("before", "after"),
+        [
+            ("generations = 4", "generations=4 # turns: 8"),
+            ("[provenance]\n", "[provenance]\nnote = 'mine'\n"),
+            ('name = "toy-here"', 'name = "toy-there"\nworkers = 4'),
+        ],
+        ids=["comment", "provenance", "executor"],
+    )
+    def test_may_differ_in_what_does_not_determine_the_result(
+        self, finished: Path, before: str, after: str
+    ) -> None:
+        path = finished / "config.toml"
+        assert path.read_text().count(before) == 1
+        path.write_text(path.read_text().replace(before, after))
+        assert load_run(finished).finished()
+
+    def test_is_not_compared_before_anything_was_recorded(self, finished: Path) -> None:
+        (finished / "run.db").write_bytes(b"")
+        path = finished / "config.toml"
+        path.write_text(path.read_text().replace("generations = 4", "generations = 5"))
+        with open_run(finished) as opened:
+            assert not opened.begun
 
 
 class TestOpened:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import sys
 from pathlib import Path
 
@@ -39,6 +40,44 @@ def evoframe_aggregators():
         path.write_text(self.MODULE)
         offer = discover([str(path)]).find("aggregator", "highest")
         assert str(offer.source) == "'b?' of b? local"
+
+    def test_a_file_has_the_checksum_of_its_source(self, tmp_path: Path) -> None:
+        path = tmp_path / "checked_source.py"
+        digests = []
+        for text in (self.MODULE, f"{self.MODULE}# edited\n", self.MODULE):
+            path.write_text(text)
+            source = discover([str(path)]).find("aggregator", "highest").source
+            assert source.digest == f"sha256:{hashlib.sha256(text.encode()).hexdigest()}"
+            digests.append(source.digest)
+        assert digests[0] == digests[2] != digests[1]
+
+    def test_an_installed_plugin_has_a_version_and_no_checksum(self) -> None:
+        assert {offer.source.digest for offer in discover().offers} == {""}
+
+    @pytest.mark.parametrize("module", ["acme_checked", "acme_checked.plugin"])
+    def test_a_package_has_the_checksum_of_all_its_python_files(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: str
+    ) -> None:
+        package = tmp_path / "acme_checked"
+        (package / "inner").mkdir(parents=True)
+        (package / "plugin.py").write_text(self.MODULE)
+        (package / "__init__.py").write_text("from acme_checked.plugin import evoframe_aggregators\n")
+        (package / "inner" / "helper.py").write_text("a = 1\n")
+        monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+
+        def digest() -> str:
+            for name in [name for name in sys.modules if name.startswith("acme_checked")]:
+                monkeypatch.delitem(sys.modules, name)
+            return discover([module]).find("aggregator", "highest").source.digest
+
+        before = digest()
+        (package / "notes.txt").write_text("not Python")
+        assert digest() == before
+        (package / "inner" / "helper.py").write_text("a = 2\n")
+        edited = digest()
+        assert edited != before
+        (package / "inner" / "helper.py").rename(package / "helper.py")
+        assert digest() not in (before, edited)
 
     def test_a_module_in_the_working_directory_is_a_plugin(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -13,7 +13,7 @@ import pytest
 import toys
 from recorded import rewritten
 
-from evoframe import Plugins, RunConfig, load_run, run
+from evoframe import Plugins, RunConfig, load_run, resume, run
 from evoframe.contract.config import Source
 from evoframe.errors import LockedError
 from evoframe.files.locks import acquire_lock
@@ -123,7 +123,8 @@ def test_a_changed_configuration_is_detected(finished: Path, toy_plugins: Plugin
     path = finished / "config.toml"
     path.write_text(path.read_text().replace("seed = 3", "seed = 4"))
     found = problems(list(check_run(finished, toy_plugins)))
-    assert found["configuration"].startswith(f"{finished}: ")
+    assert list(found) == ["configuration"]
+    assert found["configuration"].startswith(f"{path}: ")
     assert re.search(r"run\.seed: 3 .*4", found["configuration"])
 
 
@@ -139,6 +140,29 @@ def test_other_versions_are_noted(
     noted = [check for check in check_run(finished, toy_plugins) if check.state == "note"]
     assert [check.subject for check in noted] == ["versions"]
     assert re.search(r"evoframe: '0\.1\.0' .*'99'", noted[0].finding)
+
+
+def test_another_source_of_a_local_plugin_is_noted(toy_config: Load, tmp_path: Path) -> None:
+    made, edited = Plugins(), Plugins()
+    for plugins, digest in ((made, "sha256:one"), (edited, "sha256:two")):
+        plugins.add(toys, Source("toys", "local", "toys", digest))
+    finished = run(toy_config(plugins=made), out=tmp_path / "run").directory
+    assert [check.state for check in check_run(finished, made)] == ["ok"] * 7
+    [noted] = [check for check in check_run(finished, edited) if check.state != "ok"]
+    assert (noted.subject, noted.state) == ("versions", "note")
+    assert "local_plugins.toys: 'sha256:one' then, 'sha256:two' now" in noted.finding
+
+
+def test_a_run_that_was_resumed_with_other_versions_is_noted(
+    toy_config: Load, toy_plugins: Plugins, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prepare(toy_config(), toy_plugins, tmp_path / "run").play(lambda: True)
+    with monkeypatch.context() as patch:
+        patch.setattr("evoframe.record.provenance.__version__", "99")
+        resume(tmp_path / "run", plugins=toy_plugins, allow_different_versions=True)
+    [noted] = [check for check in check_run(tmp_path / "run", toy_plugins) if check.state != "ok"]
+    assert (noted.subject, noted.state) == ("versions", "note")
+    assert re.match(r"when the run was resumed after turn 0: evoframe: '0\.1\.0' .*'99'", noted.finding)
 
 
 def test_a_champion_with_a_different_score_is_detected(

@@ -129,7 +129,7 @@ def test_a_verified_run_is_read_once(
     reads = counted(finished, monkeypatch)
     again(finished, plugins)
     assert (reads.parsed, reads.opened) == (1, 1)
-    assert_every_table_was_checked_once(reads, {"best_pairs"})  # nothing else is needed
+    assert_every_table_was_checked_once(reads, {"meta", "best_pairs"})  # nothing else is needed
 
 
 def test_a_loaded_run_is_read_once(finished: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -139,7 +139,7 @@ class TestRefusal:
         (left / "config.toml").write_text(text.replace("generations = 4", "generations = 5"))
         with pytest.raises(ConfigurationError, match=r"\n  run\.generations: 4 .*5") as caught:
             resume(left, plugins=toy_plugins, allow_different_versions=True)
-        assert caught.value.source == str(left)
+        assert caught.value.source == str(left / "config.toml")
 
     def test_of_other_versions_names_all_changes(
         self, toy_config: Load, left: Path, monkeypatch: pytest.MonkeyPatch
@@ -160,6 +160,19 @@ class TestRefusal:
         resumed = resume(left, plugins=newer, allow_different_versions=True)
         recorded = json.loads(resumed.resumes()[-1]["differences"])
         assert [line for line in recorded if re.match(changes[0], line)]
+
+    def test_of_another_source_of_a_local_plugin_names_it(self, toy_config: Load, tmp_path: Path) -> None:
+        made, edited = Plugins(), Plugins()
+        for plugins, digest in ((made, "sha256:one"), (edited, "sha256:two")):
+            plugins.add(toys, Source("toys", "local", "toys", digest))
+        left = tmp_path / "left"
+        prepare(toy_config(plugins=made), made, left).play(lambda: True)
+        change = "local_plugins.toys: 'sha256:one' then, 'sha256:two' now"
+        with pytest.raises(ConfigurationError, match=change) as caught:
+            resume(left, plugins=edited)
+        assert caught.value.source == str(left)
+        resumed = resume(left, plugins=edited, allow_different_versions=True)
+        assert json.loads(resumed.resumes()[-1]["differences"]) == [change]
 
     def test_of_a_configuration_that_reads_other_files(self, left: Path, toy_plugins: Plugins) -> None:
         text = (left / "config.toml").read_text()

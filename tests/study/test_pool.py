@@ -1,80 +1,62 @@
-"""Workers of a study: the loss of one does not affect the others."""
+"""Workers of a study: runs are resumed by others, progress is reported, and failures have a cause."""
 
 from __future__ import annotations
 
 import contextlib
-import os
-import signal
-import time
-from collections.abc import Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-import pebble
 import pytest
-from chatter import chatter
+import toys
+from processes import LIMIT
 
-from evoframe.config.layers import Layers
+from evoframe import RunError, WorkerError, load_run
+from evoframe.study.plan import Study
 from evoframe.study.pool import End, Pool, end_of
 from evoframe.study.worker import Order
 
-LOST, OTHER = Path("lost"), Path("other")
+Read = Callable[..., Study]
 
 
 @pytest.fixture
-def pool() -> Iterator[Pool]:
-    with contextlib.closing(Pool(2)) as pool:
-        pool._orders += [Order(directory, Layers(()), "", ()) for directory in (LOST, OTHER)]
-        yield pool
+def orders(toy_study: Read, tmp_path: Path) -> list[Order]:
+    study = toy_study()
+    return [
+        Order(run.directory, study.layers_of(run), study.label, (toys.__file__,))
+        for run in study.planned(tmp_path / "there")
+    ]
 
 
-def reports(pool: Pool, about: Path) -> Iterator[int]:
-    """Yield the ids of the processes that report on a run."""
-    until = time.monotonic() + 30
-    while time.monotonic() < until:
-        for directory, process, _ in pool.news():
-            if directory == about:
-                yield process
-                until = time.monotonic() + 30
-    raise AssertionError(f"no report on {about}")
+def test_runs_are_executed_and_report_their_progress(orders: list[Order]) -> None:
+    with contextlib.closing(Pool(2, [toys.__file__])) as pool:
+        ends = [end_of(pool.start(order)) for order in orders[:2]]
+        news = list(pool.news())
+    assert [end.state for end in ends] == ["finished"] * 2
+    assert [end.score for end in ends] == [
+        load_run(order.directory).summary()["best_pair_score"] for order in orders[:2]
+    ]
+    assert {directory for directory, _, _ in news} == {order.directory for order in orders[:2]}
+    assert all(turn >= 0 and best is not None for _, turn, best in news)
 
 
-def test_the_others_continue_when_one_is_killed_while_it_reports(pool: Pool) -> None:
-    other = pool._processes.schedule(chatter, [1])
-    killed: set[int] = set()
-    for _ in range(8):
-        lost = pool._processes.schedule(chatter, [0])
-        # Pebble loses track of work whose process is killed before pebble knows that it has started.
-        process = next(each for each in reports(pool, LOST) if each not in killed and lost.running())
-        os.kill(process, signal.SIGKILL)
-        killed.add(process)
-        with pytest.raises(pebble.ProcessExpired):
-            lost.result(60)
-        for _, _ in zip(range(10_000), reports(pool, OTHER), strict=False):
-            pass  # more than the pipe held before: its capacity is 65,536 bytes
-    assert not other.done()
-    pool.request_stop()
-    pool.request_stop()
-    for _ in pool.news():
-        pass
-    other.result(60)
+def test_a_requested_stop_reaches_runs_that_start_later(orders: list[Order]) -> None:
+    with contextlib.closing(Pool(1, [toys.__file__])) as pool:
+        pool.request_stop()
+        pool.request_stop()
+        assert pool.start(orders[0]).result(LIMIT) == End("stopped")
 
 
-def expired(code: int) -> Exception:
-    return pebble.ProcessExpired("", code)  # type: ignore[no-untyped-call]
+def test_a_run_whose_workers_cannot_start_fails_with_the_cause(orders: list[Order]) -> None:
+    with contextlib.closing(Pool(1, ["no_such_plugin"])) as pool:
+        for order in orders[:2]:  # the second has new workers
+            end = end_of(pool.start(order))
+            assert end.state == "failed"
+            assert "no_such_plugin" in end.cause
 
 
-@pytest.mark.parametrize(
-    ("error", "cause"),
-    [
-        (expired(-signal.SIGKILL), "SIGKILL"),
-        (expired(3), "exit code 3"),
-        (BrokenProcessPool(), "no worker"),
-    ],
-)
-def test_work_whose_process_was_lost_has_failed(error: Exception, cause: str) -> None:
+@pytest.mark.parametrize("error", [WorkerError("its workers ended", ("an order",)), RunError("none started")])
+def test_work_without_a_worker_has_failed(error: RunError) -> None:
     future: Future[End] = Future()
     future.set_exception(error)
-    assert end_of(future).state == "failed"
-    assert cause in end_of(future).cause
+    assert end_of(future) == End("failed", error.problem)

@@ -16,6 +16,7 @@ from evoframe.config.resolve import resolve_layers
 from evoframe.errors import LockedError, NotEmptyError
 from evoframe.files.locks import locked
 from evoframe.messages import full_text
+from evoframe.record import open_run
 from evoframe.record.layout import VERIFICATION_FILE
 from evoframe.runs.execution import Execution
 from evoframe.runs.starting import prepare
@@ -25,7 +26,7 @@ from evoframe.study.progress import REMEDY
 from evoframe.study.worker import Channel, Order, _Reporter, perform
 
 Read = Callable[..., Study]
-SILENT = Channel(lambda _, __: None, lambda: False)
+SILENT = Channel(lambda _, __: None, lambda: False, lambda: None)
 
 
 @pytest.fixture
@@ -93,6 +94,20 @@ def test_a_run_whose_directory_another_process_has_just_locked_is_left_to_it(
     assert perform(order, SILENT)
 
 
+@pytest.mark.parametrize("finished", [False, True])
+def test_a_run_begins_once_it_is_open(order: Order, *, finished: bool) -> None:
+    if finished:
+        assert perform(order, SILENT)
+    begun: list[bool] = []
+
+    def begin() -> None:
+        with open_run(order.directory) as run:
+            begun.append(run.finished())
+
+    assert (perform(order, Channel(lambda _, __: None, lambda: True, begin)) is not None) == finished
+    assert begun == [finished]
+
+
 def test_a_finished_run_is_only_verified_and_only_once(order: Order) -> None:
     assert perform(order, SILENT)
     verification = order.directory / VERIFICATION_FILE
@@ -114,7 +129,9 @@ def test_turns_are_reported_at_most_once_per_interval(
     clock = itertools.count()
     monkeypatch.setattr("time.monotonic", lambda: next(clock) * pace)
     reported: list[tuple[int, float | None]] = []
-    reporter = _Reporter(Channel(lambda turn, best: reported.append((turn, best)), lambda: False))
+    reporter = _Reporter(
+        Channel(lambda turn, best: reported.append((turn, best)), lambda: False, lambda: None)
+    )
     finished, best = [], None
     for turn in assemble(resolve_layers(order.layers, order.label, toy_plugins)):
         reporter.evoframe_turn_finished(turn)

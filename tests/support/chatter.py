@@ -1,14 +1,14 @@
-"""A worker of a study that reports without pause, in a module that its process can import."""
+"""A task of a worker that reports without pause, in a module that its process can import."""
 
 from __future__ import annotations
 
 import os
 
-from evoframe.study.pool import _channel
+from evoframe.workers import report, stop_requested
 
 
-def chatter(number: int) -> None:
-    """Report the process's id in place of a turn, until a stop is requested."""
-    channel = _channel(number)
-    while not channel.stop():
-        channel.report(os.getpid(), None)
+def chatter(number: int) -> int:
+    """Report a number and the process's id, until a stop is requested; return the number."""
+    while not stop_requested():
+        report((number, os.getpid()))
+    return number

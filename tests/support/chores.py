@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import resource
 import signal
 import sys
 import threading
@@ -11,6 +12,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+from evoframe.workers import report
 
 
 def square(item: int) -> int:
@@ -55,6 +58,43 @@ def keep_the_lock(path: Path) -> None:
     """Hang without releasing the GIL, as a simulator in C could do."""
     path.write_text(str(os.getpid()))
     ctypes.PyDLL(None).sleep(3600)
+
+
+def exit_in_initializer(code: int) -> None:
+    os._exit(code)
+
+
+def fail_with_output(text: bytes) -> None:
+    os.write(2, text)
+    os._exit(4)
+
+
+def fork_and_end(code: int) -> None:
+    """End this process, but not its fork, which lives for a while."""
+    if os.fork() == 0:
+        time.sleep(20)
+        os._exit(0)
+    os._exit(code)
+
+
+def use_memory(limit: int) -> None:
+    """Limit the memory of this process, and use more."""
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    bytearray(limit)
+
+
+def write(descriptor: int, text: bytes) -> None:
+    os.write(descriptor, text)
+
+
+def advance_and_end(directory: Path) -> int:
+    """Report, and end the process, unless it has been called eight times; return the number of calls."""
+    calls = len(list(directory.iterdir()))
+    (directory / str(calls)).touch()
+    if calls < 8:
+        report(calls)
+        os._exit(3)
+    return calls + 1
 
 
 def size(item: bytes) -> int:

@@ -32,8 +32,8 @@ def toy_file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def toy_config(toy_plugins: Plugins, toy_file: Path) -> Callable[..., RunConfig]:
-    def load(*overrides: str) -> RunConfig:
-        return load_config(toy_file, overrides=overrides, plugins=toy_plugins)
+    def load(*overrides: str, plugins: Plugins = toy_plugins) -> RunConfig:
+        return load_config(toy_file, overrides=overrides, plugins=plugins)
 
     return load
 

@@ -6,6 +6,7 @@ A genome is a number, a design has one number for each role, and a score is thei
 from __future__ import annotations
 
 import logging
+import os
 import time
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -248,6 +249,18 @@ class Unsound(Product):
 
 
 @attrs.frozen
+class Fatal(Product):
+    """Ends its process if the file *fixed* is missing."""
+
+    fixed: str = ""
+
+    def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+        if not Path(self.fixed).exists():
+            os._exit(3)
+        return super().simulate(designs, record)
+
+
+@attrs.frozen
 class Varied(Product):
     """Has several optional capabilities: reading, settings, export and variants.
 
@@ -442,6 +455,7 @@ def evoframe_simulators() -> Mapping[str, type[Any]]:
         "toy-slow": Slow,
         "toy-unsound": Unsound,
         "toy-hanging": Hanging,
+        "toy-fatal": Fatal,
         "toy-varied": Varied,
         "toy-steered": Steered,
         "toy-fitting": Fitting,

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import concurrent.futures
 from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, TimeoutError as TookTooLong
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, Future
 from typing import Any, Generic, TypeVar
 
 import attrs
-import pebble
 
 from evoframe import ExecutorRun, RunError, WorkerError, WorkerProcesses, available_cores
 from evoframe_executors.options import overdue, time_limit, worker_count
-from evoframe_executors.worker import Answer, execute, pack, unpack
+from evoframe_executors.worker import Answer, Call, execute, pack, unpack
 
 __all__ = ["Processes"]
 
@@ -21,15 +19,15 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 _IN_PROGRESS = 2  # items per worker: the current one, and the next one
-_LOST = (TookTooLong, pebble.ProcessExpired, BrokenProcessPool)
 
 
 @attrs.frozen
 class Processes:
     """Separate processes; they can be terminated if they hang, and a crash does not end the run.
 
-    If a worker crashes or exceeds the time limit, its batch is repeated once; if the second attempt fails
-    too, the run stops. Simulators and objectives must come from installed plugins, since workers import them
+    If a worker ends, at any moment, it is replaced and its batch is repeated. If five workers crash during
+    the same batch, or 20 are killed, the run stops. A batch that exceeds the time limit is repeated once.
+    Simulators and objectives must come from installed plugins, since workers import them
     by name.
 
     Attributes:
@@ -49,14 +47,14 @@ class Processes:
 
 @attrs.frozen(eq=False)
 class _Task(Generic[T]):
-    """An item, the parcel that contains the item and the function, and the future answer."""
+    """An item, the call for a worker, and the future answer."""
 
     item: T
-    parcel: bytes
+    call: Call
     future: Future[Answer]
 
     def has_failed(self) -> bool:
-        """Return whether the function raised an exception; ``False`` for a lost worker, which is retried."""
+        """Return whether the function raised an exception; ``False`` if it exceeded the time limit."""
         return self.future.exception() is None and not self.future.result().succeeded
 
 
@@ -85,8 +83,8 @@ class _ProcessWorkers:
         in_progress: set[_Task[T]] = set()
         try:
             for item in items:
-                parcel = pack(function, item)
-                tasks.append(task := _Task(item, parcel, self._schedule(parcel)))
+                call = pack(function, item)
+                tasks.append(task := _Task(item, call, self._schedule(call)))
                 in_progress.add(task)
                 done = self._done(in_progress)
                 if any(task.has_failed() for task in done):
@@ -104,33 +102,27 @@ class _ProcessWorkers:
         return {task for task in in_progress if task.future.done()}
 
     def _result(self, task: _Task[Any]) -> Any:
-        """Return the result of a task; retry it if its worker was lost."""
+        """Return the result of a task; repeat it once if it exceeded the time limit."""
         try:
-            answer = task.future.result()
-        except _LOST:
-            answer = self._retry(task)
+            try:
+                answer = task.future.result()
+            except TimeoutError:
+                answer = self._schedule(task.call).result()
+        except TimeoutError as error:
+            raise WorkerError(f"{overdue(self._limit)}, twice", task.item) from error
+        except WorkerError as error:
+            raise WorkerError(error.problem, task.item) from error
+        except RunError as error:
+            raise RunError(error.problem, key="executor") from error
         return unpack(answer)
 
-    def _retry(self, task: _Task[T]) -> Answer:
-        try:
-            return self._schedule(task.parcel).result()
-        except TookTooLong as error:
-            raise WorkerError(f"{overdue(self._limit)}, twice", task.item) from error
-        except pebble.ProcessExpired as error:
-            raise WorkerError(
-                f"its worker process ended with {WorkerProcesses.ending(error)}, twice", task.item
-            ) from error
-        except BrokenProcessPool as error:
-            raise RunError(
-                "worker processes cannot be started, or end immediately; they import the main program, so "
-                "move its code below \"if __name__ == '__main__':\"",
-                key="executor",
-            ) from error
-
-    def _schedule(self, parcel: bytes) -> Future[Answer]:
-        if not self._pool.active:  # all of its processes were lost
+    def _schedule(self, call: Call) -> Future[Answer]:
+        if not self._pool.active:  # it could not start workers
             self._restart()
-        return self._pool.schedule(execute, [parcel], self._limit)
+        try:
+            return self._pool.schedule(execute, [call], self._limit)
+        except RunError as error:  # no more threads or files
+            raise RunError(error.problem, key="executor") from error
 
     def _restart(self) -> None:
         self.close()

@@ -14,7 +14,7 @@ import attrs
 
 from evoframe import RunError
 
-__all__ = ["Answer", "execute", "pack", "unpack"]
+__all__ = ["Answer", "Call", "execute", "pack", "unpack"]
 
 
 @attrs.frozen
@@ -30,24 +30,46 @@ class Answer:
     parcel: bytes
 
 
-def pack(function: Callable[[Any], Any], item: Any) -> bytes:
-    """Return a parcel for :func:`execute`.
+@attrs.frozen
+class Call:
+    """A function and its item, in a parcel; unpickling it also opens the parcel, for :func:`execute`.
+
+    Attributes:
+        parcel: The function and the item.
+    """
+
+    parcel: bytes
+
+    def __reduce__(self) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
+        return _opened, (self.parcel,)
+
+
+def _opened(parcel: bytes) -> tuple[Callable[[Any], Any], Any] | Answer:
+    """Return the function and the item in a parcel, or the answer that it cannot be opened."""
+    try:
+        function, item = ForkingPickler.loads(parcel)
+    except Exception as error:  # noqa: BLE001 - raised in the calling process
+        return _transfer_failure("cannot load a task in a worker process", error)
+    return function, item
+
+
+def pack(function: Callable[[Any], Any], item: Any) -> Call:
+    """Return a call for a worker process.
 
     Raises:
         RunError: The function or the item cannot be pickled.
     """
     try:
-        return _pickle((function, item))
+        return Call(_pickle((function, item)))
     except Exception as error:
         raise _transfer_error("cannot send a task to a worker process", error) from error
 
 
-def execute(parcel: bytes) -> Answer:
-    """Call the packed function with its item, in a worker process, and return its result."""
-    try:
-        function, item = ForkingPickler.loads(parcel)
-    except Exception as error:  # noqa: BLE001 - raised in the calling process
-        return _transfer_failure("cannot load a task in a worker process", error)
+def execute(call: tuple[Callable[[Any], Any], Any] | Answer) -> Answer:
+    """Execute a call that has arrived in a worker process, and return its result."""
+    if isinstance(call, Answer):
+        return call
+    function, item = call
     try:
         result = function(item)
     except BaseException as error:  # noqa: BLE001 - raised in the calling process

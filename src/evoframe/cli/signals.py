@@ -7,7 +7,6 @@ thread watches the signals, too. It ends the process if Python does not do so so
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
 import os
 import signal
 import threading
@@ -135,10 +134,8 @@ def _watch(
 
 
 def _end(number: int, words: str) -> None:
-    """End this process and those that it started; everything that was saved stays saved."""
+    """End this process, and thereby its workers; everything that was saved stays saved."""
     try:
         click.echo(words, err=True)
     finally:
-        for child in multiprocessing.active_children():
-            child.kill()
         os._exit(exit_code(number))

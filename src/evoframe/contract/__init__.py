@@ -11,6 +11,7 @@ from evoframe.contract.config import (
     RunConfig,
     RunSettings,
     Source,
+    deciding,
     is_role,
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
@@ -128,6 +129,7 @@ __all__ = [
     "Variant",
     "Workload",
     "blaming",
+    "deciding",
     "is_role",
     "unit_of",
     "window_of",

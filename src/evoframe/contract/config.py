@@ -31,6 +31,7 @@ __all__ = [
     "RunConfig",
     "RunSettings",
     "Source",
+    "deciding",
     "is_role",
 ]
 
@@ -54,6 +55,8 @@ ADDED_LATER: Mapping[str, bool] = {"evoframe.added_later": True}
 metadata=ADDED_LATER)``. While it has its default, it is left out of what determines a result, so that earlier
 runs, rows and champions remain valid."""
 
+_NOT_DECIDING = ("extends", "executor", "provenance")  # tables of a run's configuration
+
 
 @attrs.frozen(order=True)
 class Source:
@@ -63,11 +66,13 @@ class Source:
         distribution: Name of the installed distribution, or of the local module given with ``-p``.
         version: The distribution's version; ``local`` for a local module.
         entry_point: Name of the entry point in the group ``evoframe``.
+        digest: SHA-256 of the source of a local module; empty for a distribution, which has a version.
     """
 
     distribution: str
     version: str
     entry_point: str
+    digest: str = ""
 
     def __str__(self) -> str:
         return f"'{self.entry_point}' of {self.distribution} {self.version}"
@@ -167,6 +172,10 @@ class RunConfig:
         """Return the configuration as TOML tables that include every default."""
         return self._tables(_table)
 
+    def recorded(self) -> Tree:
+        """Return the tables that a run records: without options of :data:`ADDED_LATER` at their default."""
+        return self._tables(_recorded_table)
+
     def _tables(self, table: Callable[[Chosen[Any]], Tree]) -> Tree:
         populations = {
             role: {
@@ -186,16 +195,20 @@ class RunConfig:
 
     def deciding(self) -> Tree:
         """Return the tables that determine the result (all but the executor) as JSON values."""
-        tables = self._tables(_deciding_table)
-        return as_read({key: table for key, table in tables.items() if key not in ("extends", "executor")})
+        return as_read(deciding(self.recorded()))
 
     def simulation(self) -> Tree:
         """Return the tables that determine the simulation and the score of a design."""
-        return {key: _deciding_table(getattr(self, key)) for key in ("simulator", "objective")}
+        return {key: _recorded_table(getattr(self, key)) for key in ("simulator", "objective")}
 
     def to_toml(self) -> str:
         """Return the text of an equivalent TOML file."""
         return tomli_w.dumps(self.tables())
+
+
+def deciding(tables: Mapping[str, Any]) -> Tree:
+    """Return those tables of a complete configuration that determine the result."""
+    return {key: table for key, table in tables.items() if key not in _NOT_DECIDING}
 
 
 def is_role(name: str) -> bool:
@@ -208,7 +221,7 @@ def _table(chosen: Chosen[Any]) -> Tree:
     return {"name": chosen.name, **options}
 
 
-def _deciding_table(chosen: Chosen[Any]) -> Tree:
+def _recorded_table(chosen: Chosen[Any]) -> Tree:
     """Return the table of a component without options that were added later and have their default."""
     later = [
         field

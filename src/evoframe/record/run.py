@@ -10,7 +10,9 @@ from typing import Any
 
 import attrs
 
-from evoframe.errors import InputError
+from evoframe.contract import deciding
+from evoframe.documents import differences
+from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import LARGEST_DOCUMENT, parsed_json, parsed_toml, read_text, refuse_links
 from evoframe.record.champion import Champion, champion_from_json, joined_key
 from evoframe.record.checksums import CHAINED, SINGLE
@@ -168,7 +170,38 @@ class Run:
         return report
 
     def check(self) -> None:
-        """Check the format and the tables of the database before it is read; :func:`open_run` calls this.
+        """Check the database before it is read, and its configuration; :func:`open_run` calls this.
+
+        Raises:
+            ConfigurationError: As :meth:`check_configuration`.
+            InputError: As :meth:`check_database`.
+        """
+        self.check_database()
+        self.check_configuration()
+
+    def check_configuration(self) -> None:
+        """Check that the configuration was not edited since the run started.
+
+        Comments, provenance and the executor, which do not determine the result, may differ.
+
+        Raises:
+            ConfigurationError: Other settings differ; the text lists them.
+            InputError: The database is damaged.
+        """
+        if not self.begun:
+            return
+        recorded, found = deciding(self.configuration()), deciding(self.config)
+        if changes := differences(recorded, found, ("recorded", f"in {CONFIG_FILE}")):
+            path = self.directory / CONFIG_FILE
+            lines = [
+                "was edited after the run started:",
+                *changes,
+                f"undo these changes, or start a new run: evoframe run {path}",
+            ]
+            raise ConfigurationError("\n  ".join(lines), source=path)
+
+    def check_database(self) -> None:
+        """Check the format and the tables of the database.
 
         Raises:
             InputError: The format or the tables differ, or the database is damaged.
@@ -254,6 +287,7 @@ def open_run(directory: str | Path) -> Iterator[Run]:
     """Open a run's directory, and check its configuration and the format and tables of its database.
 
     Raises:
+        ConfigurationError: Its configuration was edited after the run started.
         InputError: It is not a run's directory, has a different format, or is damaged.
     """
     with open_unchecked(directory) as run:
@@ -282,6 +316,7 @@ def load_run(directory: str | Path) -> Run:
     """Return the run in *directory* with all its tables.
 
     Raises:
+        ConfigurationError: As :func:`open_run`.
         InputError: As :func:`open_run`, or a table is damaged, or nothing is saved yet.
     """
     with open_run(directory) as run:

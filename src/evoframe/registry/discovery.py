@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib
 import importlib.metadata
 import importlib.util
@@ -77,7 +78,8 @@ def _load_guarded(plugins: Plugins, source: Source, entry_point: importlib.metad
 def _load_local(plugins: Plugins, module: str) -> None:
     name = Path(module).stem if module.endswith(".py") else module
     try:
-        plugins.add(_import_local(module, name), Source(encodable(name), "local", encodable(name)))
+        loaded, shown = _import_local(module, name), encodable(name)
+        plugins.add(loaded, Source(shown, "local", shown, _digest(loaded)))
     except (Exception, SystemExit) as error:
         cause = cause_of(error)
         raise PluginError(f"cannot be used as a plugin: {cause}", source=module) from error
@@ -104,3 +106,18 @@ def _import_local(module: str, name: str) -> ModuleType:
         del sys.modules[private]
         raise
     return loaded
+
+
+def _digest(module: ModuleType) -> str:
+    """Return the SHA-256 of the source of a module: its file, or all Python files of its package."""
+    parent = sys.modules.get(module.__spec__.parent or "") if module.__spec__ else None
+    roots = [Path(each) for each in getattr(parent or module, "__path__", ())]
+    found = hashlib.sha256()
+    for root in roots:
+        for path in sorted(root.rglob("*.py")):
+            content = path.read_bytes()
+            found.update(f"{path.relative_to(root).as_posix()}\0{len(content)}\0".encode())
+            found.update(content)
+    if not roots and module.__file__:
+        found.update(Path(module.__file__).read_bytes())
+    return f"sha256:{found.hexdigest()}"

@@ -13,12 +13,19 @@ import attrs
 
 from evoframe.config import load_config
 from evoframe.contract import RunConfig
-from evoframe.documents import differences
 from evoframe.errors import EvoframeError, InputError
 from evoframe.evolution import assemble, score_designs
-from evoframe.files import LOCK_FILE, acquire_lock
+from evoframe.files import LOCK_FILE, acquire_lock, parsed_json
 from evoframe.messages import full_text
-from evoframe.record import CHAINED, CHAMPION_FILE, SINGLE, Run, open_unchecked, provenance_of
+from evoframe.record import (
+    CHAINED,
+    CHAMPION_FILE,
+    SINGLE,
+    Run,
+    changed_provenance,
+    open_unchecked,
+    provenance_of,
+)
 from evoframe.registry import Plugins
 from evoframe.runs.resuming import configuration_of, restore
 
@@ -78,6 +85,7 @@ def _check_files(run: Run, plugins: Plugins) -> Iterator[Check]:
         return
     yield (intact := _check("database", lambda: _database(run)))
     try:
+        run.check_configuration()
         config = configuration_of(run, (), plugins)
     except EvoframeError as error:
         yield Check("configuration", "problem", full_text(error))
@@ -125,7 +133,7 @@ def _initial_meeting(plugins: Plugins) -> str:
 
 
 def _format(run: Run) -> str:
-    run.check()
+    run.check_database()
     return f"written by evoframe {run.config.get('provenance', {}).get('evoframe', '(version unknown)')}"
 
 
@@ -138,10 +146,25 @@ def _database(run: Run) -> str:
 
 
 def _versions_then_and_now(run: Run, config: RunConfig) -> Check:
-    changes = differences(run.config.get("provenance", {}), provenance_of(config))
-    if not changes:
+    changes = [
+        ("changed since the start of the run", changed_provenance(run, config)),
+        *((f"when the run was resumed {_after(row)}", _recorded(row)) for row in run.resumes()),
+    ]
+    found = [f"{when}: {'; '.join(lines)}" for when, lines in changes if lines]
+    if not found:
         return Check("versions", "ok", "unchanged since the start of the run")
-    return Check("versions", "note", f"changed since the start of the run: {'; '.join(changes)}")
+    return Check("versions", "note", "; ".join(found))
+
+
+def _after(resume: Mapping[str, Any]) -> str:
+    turn = resume["after_turn"]
+    return "before its first turn" if turn is None else f"after turn {turn}"
+
+
+def _recorded(resume: Mapping[str, Any]) -> list[str]:
+    """Return the differences that were recorded with a resume."""
+    lines = parsed_json(resume["differences"])
+    return [str(line) for line in lines] if isinstance(lines, list) else []
 
 
 def _turns(run: Run, config: RunConfig) -> str:

@@ -17,8 +17,8 @@ from evoframe.record import (
     SINGLE,
     Run,
     Store,
+    changed_provenance,
     open_run,
-    provenance_of,
 )
 from evoframe.registry import Plugins, discover
 from evoframe.runs.execution import Execution, verify_champion
@@ -179,14 +179,17 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
 
 
 def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
-    """Return the changes of versions and machine since the start of the run.
+    """Return the changes of versions, local plugins and machine since the start of the run.
 
     Raises:
         ConfigurationError: There are changes, and they are not allowed.
     """
-    changes = differences(run.config.get("provenance", {}), provenance_of(config))
+    changes = changed_provenance(run, config)
     if changes and not allowed:
-        problem = "versions or machine differ from those with which the run started, so its result may differ"
+        problem = (
+            "versions, local plugins or machine differ from those with which the run started, so its result "
+            "may differ"
+        )
         command = f"evoframe resume {run.directory} --allow-different-versions"
         todo = f"to continue anyway (this is recorded): {command}"
         raise ConfigurationError(f"{_listed(problem, changes)}\n  {todo}", source=run.directory)

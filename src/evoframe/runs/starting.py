@@ -83,7 +83,7 @@ def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Exe
     coevolution = assemble(config)
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
-        tables = as_read({**config.tables(), "provenance": provenance_of(config)})
+        tables = as_read({**config.recorded(), "provenance": provenance_of(config)})
         return Execution(
             config, usable, directory, tables, coevolution, _new_store(directory, config, tables)
         )

@@ -146,7 +146,7 @@ def run_study(  # noqa: PLR0913 - all but the first are keywords
     watcher.on_begin(study, todo, {run: row for run, row in found.rows.items() if statuses[run].is_complete})
     orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in todo}
     try:
-        with contextlib.closing(Pool(workers or available_cores())) as pool:
+        with contextlib.closing(Pool(workers or available_cores(), modules)) as pool:
             execute(orders, pool, watcher, stop)
     except KeyboardInterrupt:
         if not stop():

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.connection import Connection
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Literal, TypeAlias
 
 import attrs
-import pebble
 
-from evoframe.errors import LockedError
+from evoframe.errors import LockedError, RunError
 from evoframe.messages import cause_of
+from evoframe.registry import discover
 from evoframe.study.worker import Channel, Order, perform
-from evoframe.workers import WorkerProcesses
+from evoframe.workers import WorkerProcesses, begin, report, stop_requested
 
 __all__ = ["End", "News", "Pool", "end_of"]
 
@@ -42,80 +41,62 @@ class End:
 class Pool:
     """Worker processes of a study.
 
-    Workers and this process share no lock: a worker killed while holding it would block all others.
+    If a worker ends, another one resumes its run. The run fails if five workers crash, or 20 are killed, in a
+    row without a turn in between.
+
+    Args:
+        modules: Local plugins, which each worker loads before its first run.
 
     Attributes:
         workers: Number of workers.
     """
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, modules: Sequence[str] = ()) -> None:
         self.workers = workers
-        context = WorkerProcesses.context
-        self._news, self._sender = context.Pipe(duplex=False)
-        self._requested, self._stop = context.Pipe(duplex=False)
-        self._orders: list[Order] = []
-        self._processes = self._start_workers()
+        self._modules = tuple(modules)
+        self._news: SimpleQueue[News] = SimpleQueue()
+        self._processes = self._new_processes()
 
     def start(self, order: Order) -> Future[End]:
         """Queue a run for the next free worker."""
-        if not self._processes.active:  # all workers were lost at once
+        if not self._processes.active:  # it could not start workers
             self._processes.close()
-            self._processes = self._start_workers()
-        self._orders.append(order)
-        return self._processes.schedule(_work, [len(self._orders) - 1, order])
+            self._processes = self._new_processes()
+        return self._processes.schedule(
+            _work,
+            [order],
+            on_report=lambda progress: self._news.put((order.directory, *progress)),
+            begins_itself=True,
+        )
 
-    def _start_workers(self) -> WorkerProcesses:
-        return WorkerProcesses(self.workers, _initialize, [self._sender, self._requested])
+    def _new_processes(self) -> WorkerProcesses:
+        return WorkerProcesses(self.workers, discover, [self._modules])
 
     def news(self) -> Iterator[News]:
         """Yield the progress that the workers have sent since the last call."""
-        while self._news.poll():
-            number, turn, best = self._news.recv()
-            yield self._orders[number].directory, turn, best
+        for _ in range(self._news.qsize()):
+            yield self._news.get()
 
     def request_stop(self) -> None:
         """Request all workers to stop after the turn in progress."""
-        if not self._stop.closed:
-            self._stop.send(None)  # no worker receives it, so that poll() is true in all of them
-            self._stop.close()
+        self._processes.request_stop()
 
     def close(self) -> None:
         """Terminate the workers, also in the middle of a turn; saved turns are kept."""
         self._processes.close()
-        for end in (self._news, self._sender, self._requested, self._stop):
-            end.close()
 
 
 def end_of(future: Future[End]) -> End:
     """Return the outcome of an order, also if its worker process was lost."""
     try:
         return future.result()
-    except pebble.ProcessExpired as error:
-        return End("failed", f"its process ended with {WorkerProcesses.ending(error)}")
-    except BrokenProcessPool:
-        return End("failed", "no worker process left: all of them ended, or none could be started")
+    except RunError as error:  # its workers ended, or none could be started
+        return End("failed", cause_of(error))
 
 
-_ends: list[tuple[Connection, Connection]] = []
-"""Ends of a worker's pipes: the first sends progress, the second receives the request to stop."""
-
-
-def _initialize(sender: Connection, requested: Connection) -> None:
-    _ends.append((sender, requested))
-
-
-def _channel(number: int) -> Channel:
-    """Return the worker's channel for an order.
-
-    All workers write to one pipe: a message this short is written atomically.
-    """
-    sender, requested = _ends[0]
-    return Channel(lambda turn, best: sender.send((number, turn, best)), requested.poll)
-
-
-def _work(number: int, order: Order) -> End:
+def _work(order: Order) -> End:
     try:
-        run = perform(order, _channel(number))
+        run = perform(order, Channel(lambda turn, best: report((turn, best)), stop_requested, begin))
         return End("stopped") if run is None else End("finished", score=run.summary()["best_pair_score"])
     except LockedError:
         return End("elsewhere")

@@ -48,10 +48,12 @@ class Channel:
     Attributes:
         report: Sends the latest turn, and the best score since the run started or resumed.
         stop: Returns whether to stop after the turn in progress.
+        begin: Called when the run is open, and about to be played or verified.
     """
 
     report: Callable[[int, float | None], None]
     stop: Callable[[], bool]
+    begin: Callable[[], None]
 
 
 def perform(order: Order, channel: Channel) -> Run | None:
@@ -73,10 +75,12 @@ def perform(order: Order, channel: Channel) -> Run | None:
     if execution is None:
         with open_run(order.directory) as run:
             if is_finished(run):
+                channel.begin()
                 verify_if_missing(run, configuration_of(run, alone, plugins))
                 return run
             execution = reopen(run, alone, plugins)
     execution.plugins.manager.register(_Reporter(channel), name="evoframe:study")
+    channel.begin()
     played = execution.play(channel.stop)
     if not played.finished():
         return None

@@ -8,11 +8,14 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from hypothesis import given, strategies as st
+from processes import LIMIT
 
 from evoframe import Executor, ExecutorRun, WorkerError
 from evoframe.testing import ExecutorContract
 from evoframe_executors import Threads
 from evoframe_executors.threads import _Batch
+
+SLOW = 0.2  # s; 100 items take far longer than a computer can be busy with something else
 
 
 class TestThreads(ExecutorContract):
@@ -32,14 +35,14 @@ class TestManyThreads(ExecutorContract):
 
 
 class TestOneWatchedThread(ExecutorContract):
-    component = Threads(workers=1, batch_time_limit=60.0)
+    component = Threads(workers=1, batch_time_limit=LIMIT)
 
 
 class TestTwoWatchedThreads(ExecutorContract):
-    component = Threads(workers=2, batch_time_limit=60.0)
+    component = Threads(workers=2, batch_time_limit=LIMIT)
 
 
-@pytest.fixture(params=[Threads(workers=2), Threads(workers=2, batch_time_limit=60.0)], ids=["", "watched"])
+@pytest.fixture(params=[Threads(workers=2), Threads(workers=2, batch_time_limit=LIMIT)], ids=["", "watched"])
 def two_threads(request: pytest.FixtureRequest) -> Iterator[ExecutorRun]:
     run: ExecutorRun = request.param.start()
     yield run
@@ -61,7 +64,7 @@ def test_a_single_worker_is_the_calling_thread() -> None:
 
 def test_several_workers_run_in_parallel() -> None:
     run = Threads(workers=3).start()
-    meeting = threading.Barrier(3, timeout=10)  # no thread passes until all three have arrived
+    meeting = threading.Barrier(3, timeout=LIMIT)  # no thread passes until all three have arrived
     try:
         assert sorted(run.map(lambda _: meeting.wait(), range(3))) == [0, 1, 2]
     finally:
@@ -108,7 +111,7 @@ def test_after_a_failure_no_new_item_is_started(two_threads: ExecutorRun) -> Non
         started.append(item)
         if item == 0:
             raise ZeroDivisionError
-        time.sleep(0.02)
+        time.sleep(SLOW)
 
     with pytest.raises(ZeroDivisionError):
         two_threads.map(fail_at_once, range(1000))
@@ -136,7 +139,7 @@ def test_the_first_items_are_processed_while_the_next_are_created(two_threads: E
 
     def items() -> Iterator[Callable[[], object]]:
         yield started.set
-        assert started.wait(timeout=10)
+        assert started.wait(LIMIT)
         yield started.is_set
 
     assert two_threads.map(lambda item: item(), items()) == [None, True]
@@ -186,7 +189,7 @@ def test_an_interrupt_while_items_are_created_drops_the_rest(two_threads: Execut
 
     def work(item: int) -> None:
         started.append(item)
-        time.sleep(0.02)
+        time.sleep(SLOW)
 
     def items() -> Iterator[int]:
         yield from range(1000)
@@ -202,7 +205,7 @@ def test_an_interrupt_while_the_caller_helps_drops_the_rest() -> None:
 
     def work(item: int) -> None:
         started.append(item)
-        time.sleep(0.02)
+        time.sleep(SLOW)
         if threading.get_ident() == caller:
             raise KeyboardInterrupt
 
@@ -218,14 +221,14 @@ def test_an_interrupt_while_the_caller_helps_drops_the_rest() -> None:
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_hanging_thread_is_reported_and_abandoned(workers: int) -> None:
     released = threading.Event()
-    run = Threads(workers=workers, batch_time_limit=0.2).start()
+    run = Threads(workers=workers, batch_time_limit=2.0).start()
 
     def work(item: int) -> None:
         if item == 3:
-            released.wait(60)
+            released.wait(LIMIT)
 
     try:
-        with pytest.raises(WorkerError, match=r"executor\.batch_time_limit = 0\.2 s") as caught:
+        with pytest.raises(WorkerError, match=r"executor\.batch_time_limit = 2\.0 s") as caught:
             run.map(work, range(10))
         assert caught.value.item == 3
     finally:
@@ -234,9 +237,9 @@ def test_a_hanging_thread_is_reported_and_abandoned(workers: int) -> None:
 
 
 def test_the_time_limit_counts_from_the_start_of_an_item() -> None:
-    run = Threads(workers=1, batch_time_limit=0.5).start()
+    run = Threads(workers=1, batch_time_limit=2.0).start()
     try:
-        assert run.map(lambda _: time.sleep(0.1), range(10)) == [None] * 10
+        assert run.map(lambda _: time.sleep(0.25), range(10)) == [None] * 10
     finally:
         run.close()
 

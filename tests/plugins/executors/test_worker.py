@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 import chores
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from evoframe import RunError
-from evoframe_executors.worker import execute, pack, unpack
+from evoframe_executors.worker import Call, execute, pack, unpack
 
 VALUES = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text() | st.binary(),
@@ -22,8 +23,13 @@ def identity(item: Any) -> Any:
     return item
 
 
+def sent(call: Call) -> Any:
+    """Return a call as it arrives in a worker."""
+    return ForkingPickler.loads(ForkingPickler.dumps(call))
+
+
 def through(function: Any, item: Any) -> Any:
-    return unpack(execute(pack(function, item)))
+    return unpack(execute(sent(pack(function, item))))
 
 
 @given(VALUES)
@@ -37,8 +43,8 @@ def test_an_array_is_the_same_to_the_last_bit() -> None:
 
 
 def test_success_is_known_before_the_parcel_is_unpacked() -> None:
-    assert execute(pack(chores.square, 3)).succeeded
-    assert not execute(pack(chores.fail, 1)).succeeded
+    assert execute(sent(pack(chores.square, 3))).succeeded
+    assert not execute(sent(pack(chores.fail, 1))).succeeded
 
 
 def test_an_error_is_raised_with_its_traceback() -> None:
@@ -67,7 +73,7 @@ def test_a_function_that_cannot_be_sent_is_refused_by_pack() -> None:
 
 @pytest.mark.parametrize("parcel", [b"", b"not a parcel"])
 def test_an_invalid_parcel_is_answered_by_an_error(parcel: bytes) -> None:
-    answer = execute(parcel)
+    answer = execute(sent(Call(parcel)))
     assert not answer.succeeded
     with pytest.raises(RunError, match="load a") as caught:
         unpack(answer)
