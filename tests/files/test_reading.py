@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -236,3 +237,26 @@ def test_half_a_character_is_refused() -> None:
     with pytest.raises(InputError, match="TOML") as caught:
         parsed_toml(f"a = '{half}'", "--set a")
     assert caught.value.source == "--set a"
+
+
+def test_a_pipe_that_nothing_writes_to_is_refused_at_once(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="is a pipe, and nothing was written to it") as caught:
+        read_text(tmp_path / "pipe", 1)
+    assert caught.value.source == str(tmp_path / "pipe")
+
+
+def test_a_pipe_is_read_to_its_end() -> None:
+    reader, writer = os.pipe()
+
+    def write() -> None:
+        with os.fdopen(writer, "w") as file:
+            file.write("a" * 200_000)  # more than a pipe holds
+
+    thread = threading.Thread(target=write)
+    thread.start()
+    try:
+        assert read_text(Path(f"/dev/fd/{reader}"), 1) == "a" * 200_000
+    finally:
+        os.close(reader)
+        thread.join()

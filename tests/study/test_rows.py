@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
+from typing import Any
 
 import attrs
 import pytest
@@ -81,7 +82,7 @@ def test_rows_are_also_read_without_their_curves(
     assert read_rows(tmp_path / "rows.csv") == [attrs.evolve(row, fitness_curve=(), score_curve=())]
 
 
-@pytest.mark.parametrize("curve", ["a,0,score,bent", "a,zero,score,1"])
+@pytest.mark.parametrize("curve", ["a,0,score,bent", "a,0,score,nan", "a,zero,score,1"])
 def test_a_line_that_is_not_a_curve_is_refused(
     made: tuple[Study, Path, list[Planned]], tmp_path: Path, curve: str
 ) -> None:
@@ -90,6 +91,20 @@ def test_a_line_that_is_not_a_curve_is_refused(
     with pytest.raises(InputError, match=curve.split(",")[1 if "zero" in curve else 3]) as caught:
         read_rows(tmp_path / "rows.csv")
     assert (caught.value.source, caught.value.key) == (str(tmp_path / "curves.csv"), "line 2")
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [("pairs", "-1"), ("pairs", "9" * 400), ("simulations", str(2**53 + 1))]
+)
+def test_a_number_of_pairs_beyond_what_tables_hold_is_refused(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path, column: str, value: str
+) -> None:
+    row = row_of(made[2][0], load_run(made[2][0].directory))
+    changes: dict[str, Any] = {column: int(value)}
+    write_rows([attrs.evolve(row, **changes)], tmp_path / "rows.csv")
+    with pytest.raises(InputError, match="expected a number from 0") as caught:
+        read_rows(tmp_path / "rows.csv")
+    assert (caught.value.source, caught.value.key) == (str(tmp_path / "rows.csv"), "line 2")
 
 
 WINDOWS = Path(__file__).parents[1] / "data" / "windows"

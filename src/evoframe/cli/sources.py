@@ -15,7 +15,7 @@ from evoframe.config import Layer, preset_names
 from evoframe.contract import FileOptions
 from evoframe.designs import Job, read_job
 from evoframe.errors import ConfigurationError, InputError
-from evoframe.files import exists, is_file
+from evoframe.files import exists, is_directory, is_file
 from evoframe.record import CONFIG_FILE, RECORD_FILES
 from evoframe.study import TABLES, describes_study, is_study, runs_in, study_names
 
@@ -54,10 +54,12 @@ class _SourcePath(click.Path):
         """Return the path.
 
         Raises:
-            InputError: It does not exist.
+            InputError: It does not exist, or is a device or pipe.
         """
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         if exists(path):
+            if not is_file(path) and not is_directory(path):
+                raise InputError(f"is neither a file nor a directory; expected {self._expected}", source=path)
             return path
         if ctx is not None and str(path) in preset_names():
             todo = f"run it first ({command(ctx, 'run', path)}), then name the directory of the run"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import json
+import os
 import re
 import stat
 import tomllib
@@ -56,8 +57,10 @@ def read_text(path: Path, largest: int) -> str:
         InputError: The file cannot be read, is too large, or is not UTF-8 text.
     """
     try:
-        with path.open("rb") as file:
+        with open(path, "rb", opener=_open_without_waiting) as file:
             content = file.read((largest << 20) + 1)
+            if not content and stat.S_ISFIFO(os.fstat(file.fileno()).st_mode):
+                raise InputError("is a pipe, and nothing was written to it", source=path)
         if len(content) > largest << 20:
             raise InputError(f"exceeds {largest} MiB", source=path)
         if encoding := _another_encoding(content):
@@ -67,6 +70,13 @@ def read_text(path: Path, largest: int) -> str:
         raise InputError("is not UTF-8 text; save it as UTF-8", source=path) from error
     except (OSError, ValueError) as error:
         raise _unreadable(path, error) from error
+
+
+def _open_without_waiting(path: str, flags: int) -> int:
+    """Open a file; a named pipe that no program writes to seems empty, instead of waiting for ever."""
+    descriptor = os.open(path, flags | os.O_NONBLOCK)
+    os.set_blocking(descriptor, True)
+    return descriptor
 
 
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")

@@ -65,10 +65,20 @@ class Row:
     score_curve: tuple[float, ...] = ()
 
 
+_LARGEST_COUNT = 2**53  # a float, in which tables are analyzed, holds all smaller ones exactly
+
+
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
         raise ValueError(f"expected a finite number, found {text}")
+    return value
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if not 0 <= value <= _LARGEST_COUNT:
+        raise ValueError(f"expected a number from 0 to {_LARGEST_COUNT}, found {text[:30]}")
     return value
 
 
@@ -80,8 +90,8 @@ _COLUMNS: Mapping[str, Callable[[str], Any]] = {
     "fitness": _finite,
     "score": _finite,
     "fittest_pair_score": _finite,
-    "pairs": int,
-    "simulations": int,
+    "pairs": _count,
+    "simulations": _count,
     "seconds": _finite,
     "champion": str,
 }
@@ -240,7 +250,7 @@ def _curves(path: Path) -> dict[tuple[Any, ...], tuple[float, ...]]:
             (key, value) for key, value in line.items() if key not in ("run", "curve", *generations)
         )
         try:
-            values = tuple(float(line[key]) for key in generations if line[key])
+            values = tuple(_finite(line[key]) for key in generations if line[key])
             found[settings, int(line["run"]), line["curve"]] = values
         except (KeyError, ValueError) as error:
             raise InputError(f"not a curve of a study: {error}", source=path, key=f"line {number}") from error
