@@ -171,7 +171,7 @@ class TestVerification:
         [
             (lambda text: text[:-20], "", "JSON"),
             (lambda text: "{}", "", "verification"),
-            (lambda text: "[" * 100_000, "", "JSON"),
+            (lambda text: "[" * 100_000, "", "nested"),
             (lambda text: text.replace('"format":1', '"format":9'), "format", "9"),
             (lambda text: text.replace('"share":1.0', '"share":0.5'), "", "figures"),
         ],
