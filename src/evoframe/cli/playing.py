@@ -26,8 +26,8 @@ def play(ctx: click.Context, execution: Execution) -> None:
     if not is_quiet(ctx):
         execution.plugins.manager.register(Progress(), name="evoframe:progress")
     run: Run | None = None
-    with stop_on_signals("this turn") as stop, contextlib.suppress(KeyboardInterrupt):
-        stop.last_words = lambda: _interrupted(ctx, execution)
+    stopping = stop_on_signals("this turn", lambda: _interrupted(ctx, execution))
+    with stopping as stop, contextlib.suppress(KeyboardInterrupt):
         run = execution.play(stop.is_asked)
     if run is None or not run.finished():
         click.echo(_interrupted(ctx, execution), err=True)

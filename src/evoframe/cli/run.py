@@ -14,8 +14,8 @@ from evoframe.cli.context import (
     workers_option,
 )
 from evoframe.cli.playing import play
-from evoframe.cli.sources import refuse_run_and_study
-from evoframe.config import Layer, layer_of, load_config
+from evoframe.cli.sources import read_configuration
+from evoframe.config import Layer, complete_config, layer_of
 from evoframe.runs import prepare
 
 __all__ = ["run"]
@@ -58,8 +58,8 @@ def run(
     saved: Ctrl-C stops after the turn in progress, a second Ctrl-C at once, and evoframe resume continues.
     At the end, the champion is verified as by evoframe verify.
     """
-    refuse_run_and_study(ctx, source)
+    base = read_configuration(ctx, source)
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     plugins = plugins_of(ctx)
-    config = load_config(source, overrides=[*overrides, *extra, *workers], plugins=plugins)
+    config = complete_config(base, source, [*overrides, *extra, *workers], plugins)
     play(ctx, prepare(config, plugins, out))

@@ -26,12 +26,10 @@ class Stop:
 
     Attributes:
         asked_by: The signal that requested it, if any.
-        last_words: Returns the message if the process is ended from outside of the main thread.
     """
 
     def __init__(self, when: str) -> None:
         self.asked_by: int | None = None
-        self.last_words: Callable[[], str] = lambda: "Interrupted"
         self._when = when
         self._handled = 0
         self._lock = threading.Lock()
@@ -44,10 +42,6 @@ class Stop:
     def exit_code(self) -> int:
         """Exit code that a shell expects after this stop."""
         return exit_code(self.asked_by or signal.SIGINT)
-
-    def farewell(self) -> str:
-        """Return the message that applies now."""
-        return self.last_words()
 
     def ask(self, number: int) -> None:
         """Record the first signal and report its effect; later calls do nothing."""
@@ -76,12 +70,17 @@ def exit_code(number: int) -> int:
 
 
 @contextlib.contextmanager
-def stop_on_signals(when: str) -> Iterator[Stop]:
-    """Handle signals as requests to stop after *when*, such as ``this turn``."""
+def stop_on_signals(when: str, last_words: Callable[[], str] = lambda: "Interrupted") -> Iterator[Stop]:
+    """Handle signals as requests to stop.
+
+    Args:
+        when: After what it stops, such as ``this turn``.
+        last_words: Returns the message if the process is ended from outside of the main thread.
+    """
     stop = Stop(when)
     previous = {number: signal.signal(number, stop.handle) for number in _SIGNALS}
     try:
-        with _watched(2, stop.ask, stop.farewell):
+        with _watched(2, stop.ask, last_words):
             yield stop
     finally:
         for number, handler in previous.items():

@@ -11,7 +11,7 @@ import attrs
 import click
 
 from evoframe.cli.context import command, is_quiet, plugins_of
-from evoframe.config import Layer, preset_names
+from evoframe.config import Layer, Layers, preset_names, read_layers
 from evoframe.contract import FileOptions
 from evoframe.designs import Job, read_job
 from evoframe.errors import ConfigurationError, InputError
@@ -27,9 +27,9 @@ __all__ = [
     "file_options_of",
     "files_of",
     "print_notes",
+    "read_configuration",
     "read_jobs",
     "refuse_preset",
-    "refuse_run_and_study",
     "with_runs_of_studies",
 ]
 
@@ -154,19 +154,24 @@ def read_jobs(
     return jobs
 
 
-def refuse_run_and_study(ctx: click.Context, source: str) -> None:
-    """Suggest the command for a *source* that is a run or a study, not a configuration.
+def read_configuration(ctx: click.Context, source: str) -> Layers:
+    """Return the layers of a preset or file; suggest the command for a *source* that is a run or a study.
 
     Raises:
-        ConfigurationError: It is one.
+        ConfigurationError: It is one, or cannot be read.
     """
     if source in preset_names():
-        return
+        return read_layers(source)
     if exists(Path(source)) and is_file(Path(source) / CONFIG_FILE):
         todo = f"to resume it: {command(ctx, 'resume', source)}"
         raise ConfigurationError(f"is the directory of a run; {todo}", source=source)
-    if source in study_names() or is_study(Path(source)) or describes_study(source):
-        raise ConfigurationError(f"is a study; to run it: {command(ctx, 'study', source)}", source=source)
+    for_study = ConfigurationError(f"is a study; to run it: {command(ctx, 'study', source)}", source=source)
+    if source in study_names() or is_study(Path(source)):
+        raise for_study
+    layers = read_layers(source)  # once: it may be a pipe
+    if describes_study(layers):
+        raise for_study
+    return layers
 
 
 def refuse_preset(ctx: click.Context, source: str) -> None:

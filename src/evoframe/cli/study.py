@@ -99,8 +99,10 @@ def study(
         output().print(_planned(plan))
         _print_failed(plan.found)
         return
-    with stop_on_signals("the turns in progress") as stop, StudyProgress(quiet=is_quiet(ctx)) as progress:
-        stop.last_words = lambda: "Interrupted; to continue, repeat the same command"
+    stopping = stop_on_signals(
+        "the turns in progress", lambda: "Interrupted; to continue, repeat the same command"
+    )
+    with stopping as stop, StudyProgress(quiet=is_quiet(ctx)) as progress:
         result = run_study(
             found,
             out=out,

@@ -3,12 +3,19 @@
 from evoframe.config.comments import commented, starter
 from evoframe.config.hints import settings_like
 from evoframe.config.layers import Layer, Layers, layer_of, layers_in, layers_of, preset_names, read_layers
-from evoframe.config.resolve import load_config, named_simulator, resolve_layers, resolve_simulator
+from evoframe.config.resolve import (
+    complete_config,
+    load_config,
+    named_simulator,
+    resolve_layers,
+    resolve_simulator,
+)
 
 __all__ = [
     "Layer",
     "Layers",
     "commented",
+    "complete_config",
     "layer_of",
     "layers_in",
     "layers_of",

@@ -54,10 +54,20 @@ def load_config(
     """
     if not isinstance(source, str | Path):
         raise TypeError(f"expected the name of a preset or the path of a file, found {type(source).__name__}")
-    base = read_layers(source)
+    return complete_config(read_layers(source), source, overrides, plugins or discover())
+
+
+def complete_config(
+    base: Layers, source: str | Path, overrides: Iterable[str | Layer], plugins: Plugins
+) -> RunConfig:
+    """Resolve the layers that :func:`read_layers` returned for *source*, as by :func:`load_config`.
+
+    Raises:
+        ConfigurationError: The configuration is invalid; lists all faults, each with its file and key.
+    """
     layers = base.under(overrides)
     label = label_of(source, layers.layers[len(base.layers) :])
-    return resolve_layers(layers, label, plugins or discover())
+    return resolve_layers(layers, label, plugins)
 
 
 def resolve_layers(layers: Layers, label: str, plugins: Plugins, *, scored: bool = True) -> RunConfig:

@@ -167,13 +167,9 @@ def study_names() -> list[str]:
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
 
-def describes_study(source: str | Path) -> bool:
-    """Return whether a file or preset has the keys of a study.
-
-    Raises:
-        ConfigurationError: It cannot be read.
-    """
-    return bool(_OWN_KEYS.keys() & read_layers(source).merged().keys())
+def describes_study(layers: Layers) -> bool:
+    """Return whether settings, as read from a file, have the keys of a study."""
+    return bool(_OWN_KEYS.keys() & layers.merged().keys())
 
 
 def read_study(
@@ -192,7 +188,7 @@ def read_study(
     """
     read = _with_overrides(_file_of(source), overrides)
     tree = read.merged()
-    if not _OWN_KEYS.keys() & tree.keys():
+    if not describes_study(read):
         keys = " nor ".join(_OWN_KEYS)
         problem = f"not a study: has neither {keys}; to run this configuration once: evoframe run {source}"
         raise ConfigurationError(problem, source=source)
