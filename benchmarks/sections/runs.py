@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import itertools
 import statistics
 import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
-from unittest import mock
 
 import attrs
 import neat
@@ -20,18 +17,17 @@ import numpy as np
 
 import evoframe
 from benchmarks.memory import peak_memory
+from benchmarks.recording import Batch, recording
 from benchmarks.report import Row, Section, SectionError, Table
 from benchmarks.stages import Stages, Watched
 from benchmarks.timing import Action, Effort, cores_used, interleaved
-from evoframe import Coevolution, Design, ExecutorRun, RunConfig
+from evoframe import Coevolution, ExecutorRun, RunConfig
 from evoframe.record.store import Store
 from evoframe.registry.registry import Plugins
 from evoframe.runs.starting import prepare
 from evoframe_libcppn import CppnNetwork
 
 __all__ = ["runs"]
-
-Batch: TypeAlias = Sequence[Design]
 
 _SIMULATION = "simulation"
 _SAVING = ("saving", "state for the record")
@@ -70,7 +66,7 @@ def runs(effort: Effort) -> Section:
     for _ in range(effort.run_rounds):
         for workers, config in configs.items():
             first = workers == 1 and not played[workers]
-            with _recording(config, batches) if first else contextlib.nullcontext():
+            with recording(config, batches, _EVERY) if first else contextlib.nullcontext():
                 played[workers].append(_play(config))
     more = _play(_config(effort, 10, 2))
     replayed, used = _replayed(effort, configs, batches)
@@ -159,22 +155,6 @@ def _check_reached(stages: Stages, config: RunConfig) -> None:
     for _, method, stage in _watched(config):
         if not stages.calls[stage]:
             raise SectionError(f"the stage '{stage}' was never reached; a run no longer calls {method}()")
-
-
-@contextlib.contextmanager
-def _recording(config: RunConfig, batches: list[Batch]) -> Iterator[None]:
-    """Record every fourth batch simulated within a ``with`` block."""
-    simulator = type(config.simulator.component)
-    simulate: Any = simulator.simulate
-    number = itertools.count()
-
-    def recorded(component: Any, designs: Batch, record: Any) -> Any:
-        if next(number) % _EVERY == 0:
-            batches.append(designs)
-        return simulate(component, designs, record)
-
-    with mock.patch.object(simulator, "simulate", recorded):
-        yield
 
 
 def _replayed(
