@@ -29,6 +29,7 @@ class Effort:
         generations: Number of generations of a population that evolves alone.
         run: Settings that make whole runs shorter.
         run_rounds: Number of rounds of whole runs.
+        command_rounds: Number of rounds of commands of two commits.
     """
 
     rounds: int
@@ -37,9 +38,10 @@ class Effort:
     generations: int
     run: tuple[str, ...]
     run_rounds: int
+    command_rounds: int
 
 
-FULL = Effort(rounds=9, shortest=0.02, designs=25, generations=200, run=(), run_rounds=2)
+FULL = Effort(rounds=9, shortest=0.02, designs=25, generations=200, run=(), run_rounds=2, command_rounds=5)
 
 QUICK = Effort(
     rounds=3,
@@ -48,6 +50,7 @@ QUICK = Effort(
     generations=10,
     run=("run.generations=2", "populations.morphology.size=10", "populations.controller.size=10"),
     run_rounds=1,
+    command_rounds=1,
 )
 
 

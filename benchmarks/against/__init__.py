@@ -1,0 +1,1 @@
+"""Comparison of this version of evoframe with another commit: ``python -m benchmarks --against REV``."""
