@@ -23,6 +23,7 @@ from benchmarks.sections.evaluations import evaluations
 from benchmarks.sections.evolution import evolution
 from benchmarks.sections.kernels import kernels
 from benchmarks.sections.networks import networks
+from benchmarks.sections.peers import peers
 from benchmarks.sections.roofline import roofline
 from benchmarks.sections.runs import runs
 from benchmarks.sections.startup import startup
@@ -40,6 +41,7 @@ SECTIONS: dict[str, _Measurement] = {
     "runs": runs,
     "startup": startup,
     "roofline": roofline,
+    "peers": peers,
 }
 _WIDTH = 132  # of output that is not a terminal
 

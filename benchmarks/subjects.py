@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
@@ -29,6 +30,7 @@ __all__ = [
     "random_designs",
     "solid",
     "solving",
+    "traveler",
     "vox",
 ]
 
@@ -95,6 +97,13 @@ def solid() -> Design:
         raise AssertionError("the bar has holes")
     wave = np.linspace(0.0, 1.0, material.shape[0])[:, None, None]
     return body.with_role(CONTROLLER, np.broadcast_to(wave, material.shape).copy())
+
+
+def traveler(canvas: Sequence[int]) -> Design:
+    """Return a solid body that contracts in a wave along x, with offsets in radians."""
+    body = np.full(canvas, CONTRACTILE, np.uint8)
+    wave = np.linspace(0.0, 2.0 * math.pi, canvas[0])[:, None, None]
+    return Design({MORPHOLOGY: body, CONTROLLER: np.broadcast_to(wave, body.shape).copy()})
 
 
 @functools.cache

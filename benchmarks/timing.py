@@ -10,7 +10,9 @@ from typing import TypeAlias, TypeVar
 
 import attrs
 
-__all__ = ["FULL", "QUICK", "Action", "Clock", "Effort", "cores_used", "interleaved"]
+from benchmarks.pairs import alternated
+
+__all__ = ["FULL", "QUICK", "Action", "Clock", "Effort", "cores_used", "interleaved", "timed"]
 
 K = TypeVar("K")
 
@@ -67,12 +69,15 @@ def interleaved(
         effort: Number of rounds, and minimum duration of each action.
         clock: CPU time of this thread, or wall clock for actions that use several threads.
     """
-    times = {key: _repetitions(action, effort.shortest, clock) for key, action in actions.items()}
-    taken: dict[K, list[float]] = {key: [] for key in actions}
-    for _ in range(effort.rounds):
-        for key, action in actions.items():
-            taken[key].append(_mean(action, times[key], clock))
+    measures = {key: timed(action, effort, clock) for key, action in actions.items()}
+    taken = alternated(measures, effort.rounds)
     return {key: statistics.median(values) for key, values in taken.items()}
+
+
+def timed(action: Action, effort: Effort, clock: Clock = time.thread_time) -> Clock:
+    """Return a measurement of the mean time of an action, s, which was executed to warm up."""
+    times = _repetitions(action, effort.shortest, clock)
+    return lambda: _mean(action, times, clock)
 
 
 def cores_used(action: Action) -> float:

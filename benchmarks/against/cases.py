@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 
@@ -17,9 +16,9 @@ from benchmarks.bending import bimorph
 from benchmarks.pairs import ratio
 from benchmarks.recording import Batch, recording
 from benchmarks.report import Cell, Row, Section, SectionError, Table
-from benchmarks.subjects import bonds_of, published as published_designs
+from benchmarks.subjects import bonds_of, published as published_designs, traveler
 from benchmarks.timing import Effort
-from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, Design
+from evoframe import CONTROLLER, MORPHOLOGY, Design
 
 __all__ = ["CASES"]
 
@@ -192,13 +191,6 @@ def _per_bond_step(design: Design, measured: Measured) -> Table:
     )
 
 
-def _traveler(canvas: Sequence[int]) -> Design:
-    """Return a solid body that contracts in a wave along x."""
-    body = np.full(canvas, CONTRACTILE, np.uint8)
-    wave = np.linspace(0.0, 2.0 * math.pi, canvas[0])[:, None, None]
-    return Design({MORPHOLOGY: body, CONTROLLER: np.broadcast_to(wave, body.shape).copy()})
-
-
 def _ratios(measured: Measured, clock: str) -> tuple[Cell, ...]:
     found = ratio(measured.times["this"][clock], measured.times["other"][clock])
     return found.median, found.lower, found.upper
@@ -213,7 +205,7 @@ CASES: dict[str, Callable[[Comparison, Effort], Section]] = {
     "published": _published,
     "hyperneat": _hyperneat,
     "run": _run,
-    "locomotion": _LongPreset("locomotion", _traveler, generations=2, size=10),
+    "locomotion": _LongPreset("locomotion", traveler, generations=2, size=10),
     "bending": _LongPreset("bending", bimorph, generations=1, size=6),
 }
 """Name -> measurement of a case."""
