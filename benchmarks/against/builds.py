@@ -74,7 +74,7 @@ def _about(root: Path, commit: str) -> str:
 
 
 def _git(root: Path, *arguments: str, failure: str = "--against requires git and a checkout") -> bytes:
-    return _output(["git", "-C", str(root), *arguments], failure)
+    return _output(["git", "--no-optional-locks", "-C", str(root), *arguments], failure)
 
 
 def _install(site: Path, packages: Sequence[str], failure: str) -> None:

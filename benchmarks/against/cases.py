@@ -206,6 +206,6 @@ CASES: dict[str, Callable[[Comparison, Effort], Section]] = {
     "hyperneat": _hyperneat,
     "run": _run,
     "locomotion": _LongPreset("locomotion", traveler, generations=2, size=10),
-    "bending": _LongPreset("bending", bimorph, generations=1, size=6),
+    "bending": _LongPreset("bending", bimorph, generations=2, size=8),
 }
 """Name -> measurement of a case."""
