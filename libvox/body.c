@@ -3,12 +3,9 @@
 #include <string.h>
 
 #include "internal.h"
-#include "kernels/lanes.h"
 
 static const double TWO_PI_OF_TIME_STEP = 2.0 * 3.1415926; /* the engine's value */
 static const double MOST_STEPS = 9007199254740992.0;       /* 2^53; times substeps fits 64 bits */
-/* bytes; for larger bodies the time of an allocation is negligible */
-static const size_t LARGEST_SPARE = (size_t)1 << 26;
 static const size_t LINE = 64; /* bytes, largest cache line of a processor */
 
 /* ---- the cells ------------------------------------------------------------------------------- */
@@ -67,6 +64,11 @@ static void widen(struct census *census, const struct cursor *cursor)
     }
 }
 
+static double larger(double a, double b)
+{
+    return b > a ? b : a;
+}
+
 enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
                                 struct census *census)
 {
@@ -81,14 +83,14 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
         const int32_t own = model->of_code[material[cursor.cell]];
         census->n_voxels++;
         widen(census, &cursor);
-        fastest_voxel = fmax(fastest_voxel,
-                             model->substances[own].youngs_modulus / model->substances[own].mass);
+        const struct substance *substance = &model->substances[own];
+        fastest_voxel = larger(fastest_voxel, substance->youngs_modulus / substance->mass);
         for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
             if (!has_bond(model, material, &cursor, axis)) continue;
             const int32_t other = model->of_code[material[cursor.cell + stride[axis]]];
             census->n_bonds++;
             fastest_bond =
-                fmax(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
+                larger(fastest_bond, model->couplings[own * model->n_substances + other].fastest);
         }
     } while (step_on(&cursor, &model->settings));
     if (census->n_voxels == 0) return VOX_EMPTY_BODY;
@@ -98,20 +100,21 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
 
 /* ---- slots ----------------------------------------------------------------------------------- */
 
-/* Number of slots including the padding after the box, which may contain upper ends of a tile. */
-static int64_t slots_in_all(const struct body *body)
+int64_t vox_slots_in_all(const struct body *body)
 {
     int64_t farthest = 1;
     for (int axis = 0; axis < 3; axis++)
-        if (body->census.length[axis] > 1) farthest = body->step[axis];
+        if (body->census.length[axis] > 1 && body->step[axis] > farthest)
+            farthest = body->step[axis];
     return body->n_tiles * TILE + farthest;
 }
 
 static int64_t slot_of(const struct body *body, const struct cursor *cursor)
 {
-    const int64_t *from = body->census.from;
-    return cursor->at[0] - from[0] + body->step[1] * (cursor->at[1] - from[1]) +
-           body->step[2] * (cursor->at[2] - from[2]);
+    int64_t slot = 0;
+    for (int axis = 0; axis < 3; axis++)
+        slot += body->step[axis] * (cursor->at[axis] - body->census.from[axis]);
+    return slot;
 }
 
 /* ---- memory ---------------------------------------------------------------------------------- */
@@ -137,69 +140,95 @@ static double *take_numbers(struct arena *arena, int64_t n)
     return take(arena, n, sizeof(double));
 }
 
+/* Allocate `n` numbers, with `before` more in front of them. */
+static double *take_numbers_after(struct arena *arena, int64_t before, int64_t n)
+{
+    double *all = take_numbers(arena, before + n);
+    return all ? all + before : NULL;
+}
+
+static struct vecs take_vecs_after(struct arena *arena, int64_t before, int64_t n)
+{
+    double *x = take_numbers_after(arena, before, n), *y = take_numbers_after(arena, before, n),
+           *z = take_numbers_after(arena, before, n);
+    return (struct vecs){x, y, z};
+}
+
 static struct vecs take_vecs(struct arena *arena, int64_t n)
 {
     double *x = take_numbers(arena, n), *y = take_numbers(arena, n), *z = take_numbers(arena, n);
     return (struct vecs){x, y, z};
 }
 
-static void lay_out_voxels(struct voxels *v, struct arena *arena, int64_t n)
+/* Lay out the arrays that are 0 at first. */
+static void lay_out_cleared(struct body *body, struct arena *arena)
 {
-    v->position = take_vecs(arena, n);
-    double *w = take_numbers(arena, n);
-    const struct vecs q = take_vecs(arena, n);
-    v->orientation = (struct quats){w, q.x, q.y, q.z};
-    v->size = take_numbers(arena, n);
+    const int64_t n = vox_slots_in_all(body), n_groups = body->n_tiles * (TILE / GROUP);
+    struct voxels *v = &body->voxels;
     v->force = take_vecs(arena, n);
     v->torque = take_vecs(arena, n);
-    v->momentum = take_vecs(arena, n);
-    v->spin = take_vecs(arena, n);
-    v->start = take_vecs(arena, n);
-    double **const constants[] = {&v->phase,     &v->phase_sine, &v->phase_cosine, &v->amplitude,
-                                  &v->mobility,  &v->drag_rate,  &v->weight,       &v->turnability,
-                                  &v->spin_kept, &v->mobile};
+    double **const constants[] = {&v->phase,    &v->phase_sine, &v->phase_cosine,
+                                  &v->amplitude, &v->mobility,   &v->drag_rate,
+                                  &v->weight,   &v->turnability, &v->spin_kept};
     for (size_t i = 0; i < sizeof constants / sizeof *constants; i++)
         *constants[i] = take_numbers(arena, n);
     v->substance = take(arena, n, sizeof *v->substance);
     v->fixed = take(arena, n, sizeof *v->fixed);
     v->touching = take(arena, n, sizeof *v->touching);
-}
-
-static void lay_out_bonds(struct bonds *bonds, struct arena *arena, int64_t n, int64_t n_tiles,
-                          bool alike)
-{
-    bonds->there = take_numbers(arena, n);
-    bonds->small = take_numbers(arena, n);
-    bonds->stretch = take_vecs(arena, n);
-    bonds->lower_y = take_numbers(arena, n);
-    bonds->lower_z = take_numbers(arena, n);
-    bonds->upper = take_vecs(arena, n);
-#define LAY_OUT(field) bonds->coupling.field = alike ? NULL : take_numbers(arena, n);
-    BOND_LAW(LAY_OUT)
+    for (int axis = 0; axis < 3; axis++) {
+        struct bonds *bonds = &body->bonds[axis];
+        bonds->pull = take_vecs_after(arena, bonds->step, n);
+        bonds->wrench = take_vecs_after(arena, bonds->step, n);
+#define LAY_OUT(field) bonds->coupling.field = body->coupling ? NULL : take_numbers(arena, n);
+        BOND_LAW(LAY_OUT)
 #undef LAY_OUT
-    bonds->lower = take(arena, n, sizeof *bonds->lower);
-    bonds->tile_used = take(arena, n_tiles, sizeof *bonds->tile_used);
+        bonds->group_depth = take_numbers(arena, n_groups);
+    }
+    body->group_depth = take_numbers(arena, n_groups);
+    body->depth = take(arena, n, sizeof *body->depth);
+    body->queued = take(arena, body->n_slots, sizeof *body->queued);
+    body->occupied = take(arena, n, sizeof *body->occupied);
+    body->bonded = take(arena, n, sizeof *body->bonded);
 }
 
-static void lay_out(struct body *body, struct arena *arena)
+static void lay_out_others(struct body *body, struct arena *arena)
 {
-    const int64_t n = slots_in_all(body);
-    lay_out_voxels(&body->voxels, arena, n);
-    for (int axis = 0; axis < 3; axis++)
-        lay_out_bonds(&body->bonds[axis], arena, n, body->n_tiles, body->coupling != NULL);
+    const int64_t n = vox_slots_in_all(body);
+    struct voxels *v = &body->voxels;
+    v->position = take_vecs(arena, n);
+    double *w = take_numbers(arena, n);
+    const struct vecs q = take_vecs(arena, n);
+    v->orientation = (struct quats){w, q.x, q.y, q.z};
+    v->momentum = take_vecs(arena, n);
+    v->spin = take_vecs(arena, n);
+    v->size = take_numbers(arena, n);
+    v->start = take_vecs(arena, n);
+    v->depth = take_numbers(arena, n);
+    for (int axis = 0; axis < 3; axis++) {
+        struct bonds *bonds = &body->bonds[axis];
+        bonds->small = take_numbers(arena, n);
+        bonds->stretch = take_vecs(arena, n);
+        bonds->lower_y = take_numbers(arena, n);
+        bonds->lower_z = take_numbers(arena, n);
+        bonds->upper = take_vecs(arena, n);
+        bonds->depth = take_numbers(arena, n);
+        bonds->lower = take(arena, n, sizeof *bonds->lower);
+    }
+    for (int i = 0; i < N_STATE; i++) body->first.numbers[i] = take_numbers(arena, n);
     body->slots = take(arena, body->census.n_voxels, sizeof *body->slots);
     body->cells = take(arena, body->census.n_voxels, sizeof *body->cells);
     body->partly = take(arena, body->census.n_voxels, sizeof *body->partly);
     body->coordinates = take(arena, n, sizeof *body->coordinates);
-    body->tile_used = take(arena, body->n_tiles, sizeof *body->tile_used);
-    body->occupied = take(arena, n, sizeof *body->occupied);
-    body->bonded = take(arena, n, sizeof *body->bonded);
+    body->slot_of = take(arena, body->n_slots, sizeof *body->slot_of);
+    body->ring = take(arena, body->n_slots, sizeof *body->ring);
 }
 
 static enum vox_status allocate(struct body *body)
 {
     struct arena arena = {0};
-    lay_out(body, &arena);
+    lay_out_cleared(body, &arena);
+    const size_t cleared = arena.used;
+    lay_out_others(body, &arena);
     if (arena.used > body->memory_size) {
         free(body->memory);
         body->memory_size = 0;
@@ -208,9 +237,10 @@ static enum vox_status allocate(struct body *body)
         body->memory_size = arena.used;
     }
     arena.base = (char *)body->memory + (LINE - (uintptr_t)body->memory % LINE);
-    memset(arena.base, 0, arena.used);
+    memset(arena.base, 0, cleared);
     arena.used = 0;
-    lay_out(body, &arena);
+    lay_out_cleared(body, &arena);
+    lay_out_others(body, &arena);
     return VOX_OK;
 }
 
@@ -231,29 +261,38 @@ static void place_voxel(struct body *body, const struct cursor *cursor, int32_t 
     v->weight[slot] = substance->mass * model->settings.gravity;
     v->turnability[slot] = 1.0 / substance->inertia;
     v->spin_kept[slot] = 1.0 - substance->slow_spin_rate * body->census.dt;
-    v->mobile[slot] = fixed == 0 ? 1.0 : 0.0;
     body->occupied[slot] = 1;
-    body->tile_used[slot / TILE] = 1;
     if (fixed != 0 && fixed != VOX_FIX_ALL) body->partly[body->n_partly++] = (int32_t)slot;
 }
 
-/* Set the positions of cells in the lattice, including the padding after the box. */
+/* Set the cells of slots in the box and their positions in the lattice, including the padding after
+ * the box. */
 static void place_starts(struct body *body)
 {
     const double edge = body->model->settings.voxel_size;
+    const enum axis *order = body->model->order;
     const int64_t *from = body->census.from, *length = body->census.length;
-    struct vecs start = body->voxels.start;
-    for (int64_t row = 0; row * length[0] < slots_in_all(body); row++) {
-        const double y = edge * ((double)(from[1] + row % length[1]) + 0.5);
-        const double z = edge * ((double)(from[2] + row / length[1]) + 0.5);
-        for (int64_t x = 0; x < length[0] && row * length[0] + x < slots_in_all(body); x++) {
-            int32_t *place = body->coordinates[row * length[0] + x];
-            vec_put(start, row * length[0] + x,
-                    (struct vec){edge * ((double)(from[0] + x) + 0.5), y, z});
-            place[0] = (int32_t)x;
-            place[1] = (int32_t)(row % length[1]);
-            place[2] = (int32_t)(row / length[1]);
+    int64_t at[3] = {0, 0, 0};
+    for (int64_t slot = 0; slot < vox_slots_in_all(body); slot++) {
+        for (int axis = 0; axis < 3; axis++) body->coordinates[slot][axis] = (int32_t)at[axis];
+        vec_put(body->voxels.start, slot,
+                (struct vec){edge * ((double)(from[0] + at[0]) + 0.5),
+                             edge * ((double)(from[1] + at[1]) + 0.5),
+                             edge * ((double)(from[2] + at[2]) + 0.5)});
+        if (slot < body->n_slots) body->slot_of[box_cell(body, slot)] = (int32_t)slot;
+        for (int i = 0; i < 3; i++) {
+            if (++at[order[i]] < length[order[i]] || i == 2) break;
+            at[order[i]] = 0;
         }
+    }
+}
+
+/* No voxel and no bond is there; both get their depths later. */
+static void place_nothing(struct body *body)
+{
+    for (int64_t slot = 0; slot < vox_slots_in_all(body); slot++) {
+        body->voxels.depth[slot] = ABSENT;
+        for (int axis = 0; axis < 3; axis++) body->bonds[axis].depth[slot] = ABSENT;
     }
 }
 
@@ -274,10 +313,8 @@ static void place_bond(struct body *body, int64_t lower, enum axis axis)
     struct bonds *bonds = &body->bonds[axis];
     const int64_t upper = lower + bonds->step;
     bonds->lower[bonds->n++] = (int32_t)lower;
-    bonds->there[lower] = 1.0;
     body->bonded[lower] |= (uint8_t)(2u << 2 * axis);
     body->bonded[upper] |= (uint8_t)(1u << 2 * axis);
-    bonds->tile_used[lower / TILE] = 1;
     if (body->coupling) return;
     const struct coupling *coupling = coupling_of(body, lower, upper);
 #define KEEP(field) bonds->coupling.field[lower] = coupling->field;
@@ -287,11 +324,7 @@ static void place_bond(struct body *body, int64_t lower, enum axis axis)
 
 static void place_bonds(struct body *body, const uint8_t *material)
 {
-    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
-        struct bonds *bonds = &body->bonds[axis];
-        bonds->n = 0;
-        bonds->step = body->step[axis];
-    }
+    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) body->bonds[axis].n = 0;
     struct cursor cursor = {0};
     do {
         if (!material[cursor.cell]) continue;
@@ -322,17 +355,19 @@ static const struct coupling *only_coupling(const vox_model *model)
 
 static void set_box(struct body *body)
 {
-    const int64_t *length = body->census.length;
-    body->step[0] = 1;
-    body->step[1] = length[0];
-    body->step[2] = length[0] * length[1];
-    body->n_slots = length[0] * length[1] * length[2];
+    body->n_slots = 1;
+    for (int i = 0; i < 3; i++) {
+        const enum axis axis = body->model->order[i];
+        body->step[axis] = body->bonds[axis].step = body->n_slots;
+        body->n_slots *= body->census.length[axis];
+    }
     body->n_tiles = (body->n_slots + TILE - 1) / TILE;
 }
 
 enum vox_status vox_body_shape(struct body *body, const vox_model *model,
                                const struct census *census, const uint8_t *material)
 {
+    body->complete = false;
     body->model = model;
     body->census = *census;
     body->coupling = only_coupling(model);
@@ -340,100 +375,15 @@ enum vox_status vox_body_shape(struct body *body, const vox_model *model,
     set_box(body);
     enum vox_status status = allocate(body);
     if (status != VOX_OK) return status;
+    body->sources = SOURCE_UNKNOWN;
+    memcpy(body->material, material, (size_t)model->cells);
     place_starts(body);
+    place_nothing(body);
     place_voxels(body, material);
     place_bonds(body, material);
+    vox_body_rest(body);
     if (model->settings.fluid_drag > 0.0) status = vox_surface_shape(body);
     if (status == VOX_OK && model->settings.self_collision) status = vox_contacts_shape(body);
+    body->complete = status == VOX_OK;
     return status;
-}
-
-static void fill(double *numbers, int64_t n, double value)
-{
-    for (int64_t i = 0; i < n; i++) numbers[i] = value;
-}
-
-static void clear(struct vecs vecs, int64_t n)
-{
-    fill(vecs.x, n, 0.0);
-    fill(vecs.y, n, 0.0);
-    fill(vecs.z, n, 0.0);
-}
-
-static void copy(struct vecs to, struct vecs from, int64_t n)
-{
-    memcpy(to.x, from.x, (size_t)n * sizeof *to.x);
-    memcpy(to.y, from.y, (size_t)n * sizeof *to.y);
-    memcpy(to.z, from.z, (size_t)n * sizeof *to.z);
-}
-
-static void rest_bonds(struct bonds *bonds, int64_t n)
-{
-    fill(bonds->small, n, 1.0);
-    clear(bonds->stretch, n);
-    fill(bonds->lower_y, n, 0.0);
-    fill(bonds->lower_z, n, 0.0);
-    clear(bonds->upper, n);
-}
-
-void vox_body_rest(struct body *body, const double *phase_cycles)
-{
-    struct voxels *v = &body->voxels;
-    const int64_t n = slots_in_all(body);
-    copy(v->position, v->start, n);
-    fill(v->orientation.w, n, 1.0);
-    clear((struct vecs){v->orientation.x, v->orientation.y, v->orientation.z}, n);
-    fill(v->size, n, body->model->settings.voxel_size);
-    clear(v->force, n);
-    clear(v->torque, n);
-    clear(v->momentum, n);
-    clear(v->spin, n);
-    for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const int64_t slot = body->slots[i];
-        if (v->amplitude[slot] == 0.0) continue;
-        v->phase[slot] = (double)(float)phase_cycles[body->cells[i]];
-        v->phase_sine[slot] = sine(TWO_PI * v->phase[slot]);
-        v->phase_cosine[slot] = cosine(TWO_PI * v->phase[slot]);
-    }
-    for (int axis = 0; axis < 3; axis++) rest_bonds(&body->bonds[axis], n);
-    body->time = body->top_speed = body->farthest = 0.0;
-    if (body->model->settings.fluid_drag > 0.0) vox_fluid_rest(body);
-    if (body->model->settings.self_collision) vox_contacts_rest(body);
-}
-
-/* ---- reused bodies --------------------------------------------------------------------------- */
-
-static void body_destroy(struct body *body)
-{
-    if (!body) return;
-    vox_contacts_destroy(&body->contacts);
-    vox_surface_destroy(&body->surface);
-    free(body->memory);
-    free(body);
-}
-
-struct body *vox_body_take(const vox_model *model)
-{
-    for (int i = 0; i < MOST_SPARES; i++) {
-        struct body *spare = atomic_exchange(&model->spares->bodies[i], NULL);
-        if (spare) return spare;
-    }
-    return calloc(1, sizeof(struct body));
-}
-
-void vox_body_return(const vox_model *model, struct body *body)
-{
-    if (body && body->memory_size > LARGEST_SPARE) {
-        body_destroy(body);
-        return;
-    }
-    for (int i = 0; i < MOST_SPARES && body; i++)
-        body = atomic_exchange(&model->spares->bodies[i], body);
-    body_destroy(body);
-}
-
-void vox_bodies_destroy(vox_model *model)
-{
-    for (int i = 0; i < MOST_SPARES && model->spares; i++) body_destroy(model->spares->bodies[i]);
-    free(model->spares);
 }

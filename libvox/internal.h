@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "contacts/contacts.h"
 #include "vectors.h"
 #include "vox.h"
 
@@ -31,6 +32,8 @@
 /* Limits of the engine's formulas for small angles (section 5). */
 #define SLOPE_OF_SMALL_TURN 0.01732
 #define COSINE_OF_SMALL_ROTATION 0.9988
+
+enum axis { AXIS_X, AXIS_Y, AXIS_Z };
 
 /* ---- constants of a model -------------------------------------------------------------------- */
 
@@ -102,43 +105,20 @@ struct coupling_arrays {
 
 struct kernel;
 
-/* A lattice point near a voxel, and the shortest paths to it along bonds, each given by its last
- * bond. */
-struct place {
-    int32_t by[3]; /* offset from the voxel */
-    int32_t n_ways;
-    int32_t from[3]; /* index of the previous point */
-    int32_t side[3]; /* of the previous point: 0 .. 5 for -x, +x, -y, +y, -z, +z */
-};
-
-/* A cell near another one. */
-struct near_cell {
-    int32_t by[3];
-    int32_t place; /* index, or -1 if it is more bonds away */
-};
-
-/* The lattice around a voxel. */
-struct vicinity {
-    int64_t hops;
-    int64_t n_places;
-    struct place *places; /* within `hops` bonds, closer ones first: voxels connected this way
-                             do not collide */
-    int32_t *index;       /* of each point in the cube around them */
-    int64_t n_cells;
-    struct near_cell *cells; /* of voxels that may touch; each pair once */
-};
-
-/* Unused bodies, whose memory is reused. */
+/* Bodies that are not in use. They are kept for calls with the same materials, since elites and
+ * collaborators of an evolution recur, and then for their memory. */
 #define MOST_SPARES 8
 
 struct spares {
-    _Atomic(struct body *) bodies[MOST_SPARES];
+    atomic_flag busy;                 /* a thread uses this struct */
+    int64_t n;
+    struct body *bodies[MOST_SPARES]; /* the one that has not been used for the longest time first */
 };
 
 struct vox_model {
     struct vox_settings settings;
     const struct kernel *kernel;
-    struct spares *spares;
+    struct spares *spares; /* the only part that changes */
     int64_t cells;
     double rest_scale;              /* size / lattice edge without actuation: the edge is rounded to
                                        single precision */
@@ -146,6 +126,8 @@ struct vox_model {
     double fastest;                 /* 1/s2, maximum over the couplings */
     double too_far;                 /* m, distance from the start that counts as diverged */
     double floor_rise;              /* slope of the floor along x, m/m */
+    enum axis order[3];             /* of slots: from the axis along which neighbors have successive
+                                       slots to the one along which they are farthest apart */
     struct vicinity vicinity;       /* connected voxels in it do not collide */
     int16_t of_code[VOX_MAX_CODES]; /* index into substances, or -1 */
     int32_t n_substances;
@@ -165,11 +147,10 @@ struct census {
     int64_t steps;              /* to the end of the duration */
 };
 
-enum axis { AXIS_X, AXIS_Y, AXIS_Z };
-
-/* Arrays over the slots of a body: the cells of its box, x fastest, then y, then z, followed by
+/* Arrays over the slots of a body: the cells of its box in the order of the model, followed by
  * padding slots, which are treated as empty cells. Empty slots contain finite numbers without
- * effect on results. */
+ * effect on results. No result depends on the order: voxels, bonds and contacts are summed up in the
+ * order of cells, x fastest, then y, then z. */
 struct vecs {
     double *x, *y, *z;
 };
@@ -203,9 +184,16 @@ static inline void quat_put(struct quats a, int64_t i, struct quat q)
     a.z[i] = q.z;
 }
 
-/* Number of slots that kernels process at a time; the order in which a voxel's forces are summed
- * depends on it. */
+/* Number of slots that kernels process at a time, in groups that are computed together. */
 #define TILE 32
+#define GROUP 8
+
+/* Depth of a voxel (cone.c): the number of steps after which its motion can first affect a sample.
+ * In each step, voxels and bonds up to a depth are computed. */
+#define UNREACHED INT32_MAX /* of a voxel that no sample depends on */
+#define ABSENT HUGE_VAL     /* of an empty slot, and of a voxel that is not free to move */
+#define WHOLE_BODY 1e300    /* limit of the depth that includes all voxels and bonds */
+#define LONGEST_PAIR 4      /* largest difference of the depths of two voxels that are near */
 
 /* Constants and state of the voxels. */
 struct voxels {
@@ -225,7 +213,7 @@ struct voxels {
     double *weight;                    /* N, along z */
     double *turnability;               /* 1/(kg m2), the inverse of the inertia */
     double *spin_kept;  /* ratio of the spin after and before slow damping in a step */
-    double *mobile;     /* 1 if no degree of freedom is clamped, else 0 */
+    double *depth;      /* of a free voxel; ABSENT if a degree of freedom is clamped */
     uint8_t *substance; /* index */
     uint8_t *fixed;     /* clamped degrees of freedom */
     int32_t *touching;  /* scratch: number of current contacts, if damped or with friction */
@@ -235,73 +223,17 @@ struct voxels {
  * points along +axis. */
 struct bonds {
     int64_t n;
-    int32_t *lower;                  /* [n] slots, ascending */
+    int32_t *lower;                  /* [n] slots, in the order of cells */
     int64_t step;                    /* slots from the lower to the upper end */
-    double *there;                   /* 1 if the slot has a bond, else 0 */
+    double *depth;                   /* of the end with the lower depth; ABSENT without a bond */
     double *small;                   /* 1 in the small frame (section 5), 0 in the large one */
     struct vecs stretch;             /* m, at the last step without a change of frame; as below */
     double *lower_y, *lower_z;       /* rad, turn of the lower end */
     struct vecs upper;               /* rad, turn of the upper end */
     struct coupling_arrays coupling; /* of each bond, unless all are equal */
-    uint8_t *tile_used;              /* 1 if the tile has a bond */
-};
-
-/* Slots of two voxels that may touch, first < second. */
-struct pair {
-    int32_t first, second;
-};
-
-struct pairs {
-    int64_t n, capacity;
-    struct pair *list;
-};
-
-/* The skin, sorted into cubes by current position. */
-struct grid {
-    int64_t n_skin;
-    int64_t most_cubes;
-    double reach;       /* m */
-    double corner[3];   /* m */
-    double edge;        /* m, of a cube */
-    int64_t length[3];  /* cubes */
-    int32_t *begin;     /* [most_cubes + 1] into `voxels` */
-    int32_t *voxels;    /* [n_skin] slots, sorted by cube, ascending in each */
-    struct vec *packed; /* [n_skin] m, positions of these voxels */
-    int32_t *cube_of;   /* [n_skin] */
-    int32_t *found;     /* [n_skin] slots */
-};
-
-/* The latest search along bonds. */
-struct search {
-    int32_t from;     /* slot; -1 before the first search */
-    int64_t number;   /* counts the searches */
-    int64_t *reached; /* [slots] number of the last search that reached the slot */
-    int32_t *queue;   /* [slots] */
-};
-
-/* All pairs that can be listed while no voxel has strayed from its start. `words` contain one bit
- * per slot. */
-struct near_by {
-    struct pairs pairs;
-    uint64_t *joined;      /* [places][words] whether a shortest path to the place has all bonds */
-    uint64_t *bonds;       /* [6][words] */
-    uint64_t *skin, *held; /* [words] voxels that may touch others; voxels that are clamped in
-                              all degrees of freedom */
-    int64_t *begin;        /* [slots + 1] */
-    struct search search;
-};
-
-/* The voxels that may touch others, and the list of candidate pairs (section 10). */
-struct contacts {
-    int64_t n_skin;
-    int32_t *skin; /* slots, ascending */
-    int64_t most;  /* maximum number of pairs in the list */
-    struct near_by near_by;
-    struct pairs first; /* the list at rest */
-    bool first_is_known;
-    struct pairs now; /* the current list */
-    double travelled; /* lattice edges, by the fastest voxel since the list was built */
-    struct grid grid;
+    struct vecs pull, wrench;        /* N and N m, on the upper end, with the opposite sign; 0 without
+                                        a bond. Also before the first slot, by `step` slots. */
+    double *group_depth;             /* lowest of the bonds in a group of slots */
 };
 
 /* `bonded` of a voxel with a bond on every side. */
@@ -330,26 +262,48 @@ struct surface {
     struct reach *reach; /* [slots] */
 };
 
+/* Arrays of the state: 13 of the voxels, and 9 of the bonds along each axis. */
+#define N_STATE (13 + 3 * 9)
+
+/* The state after the first step, which all controllers of a body have in common. */
+struct first {
+    double limit; /* of the depth of what was computed in this step; -1 if it is not known */
+    double top_speed, farthest;
+    bool moved[N_STATE]; /* whether an array is not as at rest */
+    double *numbers[N_STATE];
+};
+
+/* Points whose positions are recorded; a sum of these bits. */
+enum sources { SOURCE_TIP = 1, SOURCE_FACE = 2, SOURCE_ALL = 4, SOURCE_UNKNOWN = 8 };
+
 struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
     int32_t (*coordinates)[3]; /* of each slot in the box */
     int64_t step[3];           /* slots between neighboring cells along each axis */
-    int32_t *slots;            /* [n_voxels] slots of the voxels, ascending */
+    int32_t *slots;            /* [n_voxels] slots of the voxels, in the order of cells */
     int32_t *cells;            /* [n_voxels] cells of the voxels in the canvas, ascending */
+    int32_t *slot_of;          /* [cells of the box] */
     uint8_t *occupied;         /* 1 if the slot has a voxel */
     uint8_t *bonded;           /* bits of the sides with a bond: -x, +x, -y, +y, -z, +z */
     struct voxels voxels;
     struct bonds bonds[3];           /* along each axis */
     const struct coupling *coupling; /* of all bonds; NULL if they differ */
-    uint8_t *tile_used;              /* 1 if the tile has a voxel */
+    int32_t *depth;                  /* [slots] of a voxel, also of one that is clamped */
+    double *group_depth;             /* lowest of the voxels in a group of slots */
+    enum sources sources;            /* of the depths */
+    int32_t *ring;                   /* [cells of the box] scratch */
+    uint8_t *queued;                 /* [cells of the box] scratch, 0 */
     int64_t n_partly; /* number of voxels that are clamped in some degrees of freedom only */
-    int32_t *partly;  /* their slots, ascending */
+    int32_t *partly;  /* their slots, in the order of cells */
     struct contacts contacts;
     struct surface surface;
+    struct first first;
     void *memory; /* of all arrays except those of contacts and surface */
     size_t memory_size;
+    uint8_t *material; /* [cells of the canvas] from which the body was built */
+    bool complete;     /* whether it was */
     double time;      /* s */
     double top_speed; /* m/s, after the previous step */
     double farthest;  /* m, largest distance of a voxel from its start so far */
@@ -373,6 +327,26 @@ IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentu
 {
     return (struct vec){force.x - drag_rate * momentum.x, force.y - drag_rate * momentum.y,
                         (force.z - drag_rate * momentum.z) + weight};
+}
+
+/* Return the index of a slot's cell in the box. */
+static inline int64_t box_cell(const struct body *body, int64_t slot)
+{
+    const int32_t *at = body->coordinates[slot];
+    const int64_t *length = body->census.length;
+    return at[0] + length[0] * (at[1] + length[1] * at[2]);
+}
+
+/* Return the square of the distance of two voxels at rest, in edges. */
+static inline int64_t start_distance2(const struct body *body, struct pair pair)
+{
+    int64_t distance2 = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t by =
+            body->coordinates[pair.second][axis] - body->coordinates[pair.first][axis];
+        distance2 += by * by;
+    }
+    return distance2;
 }
 
 /* Return the neighbor of a slot along an axis, or -1 if it is outside the box. */
@@ -403,20 +377,41 @@ const char *vox_range_message(enum vox_status status);
 enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
                                 struct census *census);
 
-/* Return a body to shape, possibly a reused one; NULL if memory runs out. Thread-safe. */
-struct body *vox_body_take(const vox_model *model);
+/* Build a body from materials; memory that is large enough is reused. */
+enum vox_status vox_body_shape(struct body *body, const vox_model *model,
+                               const struct census *census, const uint8_t *material);
+/* Number of slots including the padding after the box, which may contain upper ends of a tile. */
+int64_t vox_slots_in_all(const struct body *body);
+
+/* state.c */
+
+/* Reset the body to rest at time 0. */
+void vox_body_rest(struct body *body);
+
+/* Set the phases of the actuation, in cycles, for each cell of the canvas. */
+void vox_body_actuate(struct body *body, const double *phase_cycles);
+
+/* Keep the state after the first step, of voxels up to a depth. */
+void vox_first_keep(struct body *body, double limit);
+
+/* Make the first step from the state that was kept. */
+void vox_first_make(struct body *body, double limit);
+
+/* spares.c */
+
+/* Return a body, if possible one that is `complete` and has these materials; NULL if memory runs
+ * out. Thread-safe, like the next function. */
+struct body *vox_body_take(const vox_model *model, const uint8_t *material);
 
 /* Release a body for reuse. */
 void vox_body_return(const vox_model *model, struct body *body);
 
+/* Return whether a body was built from these materials. */
+bool vox_body_has(const struct body *body, const uint8_t *material);
+
 /* Free all unused bodies. */
 void vox_bodies_destroy(vox_model *model);
 
-/* Build a body from materials; memory that is large enough is reused. */
-enum vox_status vox_body_shape(struct body *body, const vox_model *model,
-                               const struct census *census, const uint8_t *material);
-/* Reset the body to rest at time 0. */
-void vox_body_rest(struct body *body, const double *phase_cycles);
 
 /* bond.c */
 
@@ -461,8 +456,9 @@ void vox_voxel_load(struct body *body, int64_t slot);
 bool vox_voxel_advance(struct body *body, int64_t slot);
 
 /* The reference kernel: bond.c and motion.c. */
-bool vox_scalar_bonds_apply(struct body *body, double per_second);
-bool vox_scalar_voxels_advance(struct body *body);
+bool vox_scalar_bonds_apply(struct body *body, double per_second, double limit);
+bool vox_scalar_voxels_advance(struct body *body, double limit);
+void vox_scalar_sizes_advance(struct body *body, double limit);
 
 /* kernels.c */
 
@@ -470,12 +466,15 @@ bool vox_scalar_voxels_advance(struct body *body);
 struct kernel {
     const char *name;
     bool (*usable)(void); /* support by this processor; NULL: always */
-    /* Add the forces and torques of all bonds to their voxels. `per_second` is 1/dt, or 0 in the
-     * first step, which has no rates. Return false if a bond has diverged. */
-    bool (*bonds_apply)(struct body *body, double per_second);
-    /* Advance every voxel by one time step under its accumulated forces. Return false if a voxel
-     * diverges. */
-    bool (*voxels_advance)(struct body *body);
+    /* Set the forces and torques on the voxels up to the depth `limit` to those of their bonds.
+     * `per_second` is 1/dt, or 0 in the first step, which has no rates. Return false if a bond up
+     * to this depth has diverged. */
+    bool (*bonds_apply)(struct body *body, double per_second, double limit);
+    /* Advance the voxels up to the depth `limit` by one time step under their forces. Return false
+     * if one of them diverges. */
+    bool (*voxels_advance)(struct body *body, double limit);
+    /* Change the sizes of these voxels to those after this step. */
+    void (*sizes_advance)(struct body *body, double limit);
 };
 
 extern const struct kernel vox_generic_kernel, vox_avx2_kernel, vox_avx512_kernel;
@@ -488,59 +487,6 @@ const struct kernel *vox_kernel_of(int32_t number);
     __GNUC__ >= 8
 #define VOX_X86_KERNELS
 #endif
-
-/* vicinity.c */
-
-/* Find the places within `hops` bonds and the cells within `radius` edges. Destroy the vicinity
- * even after an error. */
-enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, double radius);
-void vox_vicinity_destroy(struct vicinity *vicinity);
-
-/* Return the index of a place, or -1 if it is too far away. */
-int64_t vox_vicinity_index(const struct vicinity *vicinity, const int32_t by[3]);
-
-/* contact_near.c */
-
-/* Reserve memory for `capacity` pairs; existing pairs may be lost. */
-bool vox_pairs_reserve(struct pairs *pairs, int64_t capacity);
-
-/* List all pairs of skin voxels in near cells that may collide, sorted. */
-enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_by);
-void vox_near_by_destroy(struct near_by *near_by);
-
-/* Return whether two voxels, first < second, can ever be listed: not closely connected by bonds,
- * and not both clamped. */
-bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair);
-
-/* contact_list.c */
-
-/* Return the distance beyond which no pair is ever listed, m. */
-double vox_contacts_reach(const vox_model *model);
-
-/* Distance from its start beyond which a voxel has strayed, in lattice edges. */
-#define STRAYED 0.35
-
-enum vox_status vox_contacts_shape(struct body *body);
-void vox_contacts_rest(struct body *body);
-void vox_contacts_destroy(struct contacts *contacts);
-
-/* Rebuild the list of contact candidates if it is due; return false if there are too many. */
-bool vox_contacts_refresh(struct body *body, bool first_step);
-
-/* contact_grid.c */
-
-enum vox_status vox_grid_shape(struct grid *grid, int64_t n_skin);
-void vox_grid_destroy(struct grid *grid);
-void vox_grid_fill(struct grid *grid, const struct body *body, double reach);
-
-/* Write the skin voxels after `first` that are within its reach to `found`, in ascending order;
- * return their number. */
-int64_t vox_grid_find(const struct grid *grid, const struct body *body, int32_t first);
-
-/* contact_force.c */
-
-/* Add the forces of all contacts to their voxels. */
-void vox_contacts_apply(struct body *body);
 
 /* surface.c */
 
@@ -564,10 +510,15 @@ double vox_floor_depth(const struct body *body, int64_t slot);
  * other forces; a sticking voxel loses its lateral momentum. */
 void vox_floor_apply(struct body *body, int64_t slot);
 
-/* harmless.c */
+/* cone.c */
 
-/* Return whether the next step, whose contact list is up to date, cannot make a body diverge. */
-bool vox_next_step_is_harmless(struct body *body);
+/* Set the depths of voxels and bonds for samples of some points; the list of contacts must be that
+ * at rest. */
+void vox_cone_shape(struct body *body, enum sources sources);
+
+/* Return the share of the work of the whole body that is left if the last sample is taken after
+ * some steps. */
+double vox_cone_share(const struct body *body, int64_t steps);
 
 /* sample.c */
 

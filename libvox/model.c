@@ -121,9 +121,23 @@ static double largest_size(const vox_model *model)
            fmax(1.0, fmin(model->settings.largest_size, fmax(1.0, model->rest_scale) + amplitude));
 }
 
+/* Put the longest axis of the canvas last: the tiles of a long body are then its slices, of which
+ * those far from a sample can be left out. */
+static void choose_order(vox_model *model)
+{
+    const int64_t length[] = {model->settings.nx, model->settings.ny, model->settings.nz};
+    enum axis *order = model->order;
+    for (int i = 0; i < 3; i++) {
+        int at = i;
+        for (; at > 0 && length[order[at - 1]] > length[i]; at--) order[at] = order[at - 1];
+        order[at] = (enum axis)i;
+    }
+}
+
 static void derive_constants(vox_model *model, const struct vox_material *palette)
 {
     const struct vox_settings *s = &model->settings;
+    choose_order(model);
     model->rest_scale = (double)(float)s->voxel_size / s->voxel_size;
     const double longest = fmax((double)s->nx, fmax((double)s->ny, (double)s->nz)); /* cells */
     model->too_far = s->largest_distance * s->voxel_size * longest;
@@ -165,6 +179,7 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
     model->spares = calloc(1, sizeof *model->spares);
     if (!model->substances || !model->couplings || !model->fixed || !model->spares)
         return VOX_NO_MEMORY;
+    atomic_flag_clear(&model->spares->busy);
     derive_constants(model, palette);
     const struct vox_settings *s = &model->settings;
     const int64_t hops = (int64_t)(s->collision_list_factor * s->collision_horizon);

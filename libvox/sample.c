@@ -25,8 +25,7 @@ static struct vec mean_position(const struct body *body, double from_x)
 
 static double largest_start_x(const struct body *body)
 {
-    return body->voxels.start
-        .x[body->census.length[0] - 1]; /* the last voxel is at the end of the box */
+    return body->voxels.start.x[(body->census.length[0] - 1) * body->step[AXIS_X]];
 }
 
 static void write_voxels(const struct body *body, double *out)

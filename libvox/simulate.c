@@ -5,6 +5,9 @@
 #include "internal.h"
 
 static const double MOST_CYCLES = 1e6;
+/* With a larger share of the work left, the saving would not be worth the risk of a second
+ * simulation. */
+static const double LARGEST_SHARE = 0.75;
 
 /* Return whether the sizes of all tracks can be represented: a sample of a body has 24 bytes per
  * cell in `voxels`, and at most 48 bytes in other tracks. */
@@ -55,30 +58,48 @@ static bool phases_are_sane(const vox_model *model, const uint8_t *material,
     return true;
 }
 
+/* Check a body; `steps` is their number for the same body before, or 0. */
 static enum vox_status check_body(const vox_model *model, const uint8_t *material,
                                   const double *phase_cycles, int64_t n_samples,
-                                  const int64_t *sample_steps)
+                                  const int64_t *sample_steps, int64_t *steps)
 {
-    struct census census;
-    const enum vox_status status = vox_body_census(model, material, &census);
-    if (status != VOX_OK) return status;
+    if (*steps == 0) {
+        struct census census;
+        const enum vox_status status = vox_body_census(model, material, &census);
+        if (status != VOX_OK) return status;
+        *steps = census.steps;
+    }
     if (!phases_are_sane(model, material, phase_cycles)) return VOX_BAD_PHASE;
     if (!ascending(n_samples, sample_steps)) return VOX_BAD_SAMPLE_ORDER;
-    if (n_samples > 0 && sample_steps[n_samples - 1] > census.steps) return VOX_SAMPLE_OUT_OF_RANGE;
+    if (n_samples > 0 && sample_steps[n_samples - 1] > *steps) return VOX_SAMPLE_OUT_OF_RANGE;
     return VOX_OK;
 }
 
-/* Make a step; return false if the body diverged. No voxel moves before all forces are complete. */
-static bool advance(struct body *body, bool first_step, bool needed)
+/* Return whether a body of a batch has the same materials as the previous one. */
+static bool is_same(const vox_model *model, const uint8_t *material, int64_t i)
+{
+    const uint8_t *own = material + i * model->cells;
+    return i > 0 && memcmp(own - model->cells, own, (size_t)model->cells) == 0;
+}
+
+enum outcome { ADVANCED, DIVERGED, UNCERTAIN };
+
+/* Make a step of the voxels up to a depth; UNCERTAIN means that the whole body is needed. No voxel
+ * moves before all forces are complete. */
+static enum outcome advance(struct body *body, bool first_step, double limit)
 {
     const vox_model *model = body->model;
-    const bool collides = model->settings.self_collision;
-    if (collides && !vox_contacts_refresh(body, first_step)) return false;
-    if (!needed && vox_next_step_is_harmless(body)) return true;
-    if (!model->kernel->bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt)) return false;
-    if (collides) vox_contacts_apply(body);
+    const bool collides = model->settings.self_collision, whole = limit == WHOLE_BODY;
+    if (collides && whole && !first_step && !vox_contacts_refresh(body)) return DIVERGED;
+    if (!model->kernel->bonds_apply(body, first_step ? 0.0 : 1.0 / body->census.dt, limit))
+        return DIVERGED;
+    if (collides && whole) vox_contacts_apply(body);
+    if (collides && !whole && !vox_watch_apply(body, limit)) return UNCERTAIN;
     if (model->settings.fluid_drag > 0.0) vox_fluid_apply(body);
-    return model->kernel->voxels_advance(body);
+    if (!model->kernel->voxels_advance(body, limit)) return DIVERGED;
+    model->kernel->sizes_advance(body, limit);
+    body->time += body->census.dt;
+    return ADVANCED;
 }
 
 /* Return whether a voxel whose contact ends the motion is below the plane of the floor. */
@@ -91,41 +112,136 @@ static bool has_fallen(const struct body *body, const uint8_t *material)
     return false;
 }
 
-/* Simulate a body to the end and write its samples from `row` on. Return 0 or the step at which it
- * diverged. The last step is skipped if no sample follows it and it cannot diverge. */
-static int64_t run(struct body *body, const uint8_t *material, int64_t n_samples,
-                   const int64_t *sample_steps, const struct vox_tracks *tracks, int64_t row)
+/* Samples of one body to write from `row` on. */
+struct samples {
+    int64_t n;
+    const int64_t *steps;
+    const struct vox_tracks *tracks;
+    int64_t row;
+};
+
+/* The body diverged, or is UNCERTAIN, in a step. */
+struct end {
+    enum outcome outcome;
+    int64_t step; /* from 1 */
+};
+
+/* Return whether all controllers have the first step in common, and nothing looks at the state
+ * before it. */
+static bool shares_first_step(const struct body *body, const struct samples *samples)
 {
-    const int64_t end = row + n_samples, last = body->census.steps - 1;
-    for (int64_t step = 0;; step++) {
-        if (row < end && *sample_steps == step) {
-            vox_sample_write(body, tracks, row++);
-            sample_steps++;
+    const struct vox_settings *s = &body->model->settings;
+    const bool sampled = samples->n > 0 && samples->steps[0] == 0;
+    return !sampled && s->falling_code == 0 && s->fluid_drag == 0.0;
+}
+
+/* Reset everything but the state itself. */
+static void rest_surroundings(struct body *body, bool whole)
+{
+    const struct vox_settings *s = &body->model->settings;
+    if (s->fluid_drag > 0.0) vox_fluid_rest(body);
+    if (s->self_collision && whole) vox_contacts_rest(body);
+    if (s->self_collision && !whole) vox_watch_rest(body);
+}
+
+/* Simulate a body, either as a whole to the end of the duration, or what can affect the samples,
+ * and write them. */
+static struct end run(struct body *body, const uint8_t *material, struct samples samples,
+                      bool whole)
+{
+    const int64_t *next = samples.steps;
+    const int64_t end = samples.row + samples.n;
+    const int64_t last = whole ? body->census.steps : samples.n > 0 ? next[samples.n - 1] : 0;
+    const double first_limit = whole ? WHOLE_BODY : (double)(last - 1);
+    const bool shares = shares_first_step(body, &samples);
+    const bool is_made = shares && body->first.limit == first_limit;
+    int64_t row = samples.row;
+    rest_surroundings(body, whole);
+    if (is_made)
+        vox_first_make(body, first_limit);
+    else
+        vox_body_rest(body);
+    for (int64_t step = is_made ? 1 : 0;; step++) {
+        if (row < end && *next == step) {
+            vox_sample_write(body, samples.tracks, row++);
+            next++;
         }
-        if (step == body->census.steps) return 0;
+        if (step == last) return (struct end){ADVANCED, 0};
         if (has_fallen(body, material)) {
-            while (row < end) vox_sample_write(body, tracks, row++);
-            return 0;
+            while (row < end) vox_sample_write(body, samples.tracks, row++);
+            return (struct end){ADVANCED, 0};
         }
-        const bool needed = step < last || row < end || body->model->settings.whole_body;
-        if (advance(body, step == 0, needed)) continue;
-        vox_sample_write_nothing(body->model, tracks, row, end);
-        return step + 1;
+        const double limit = whole ? WHOLE_BODY : (double)(last - step - 1);
+        const enum outcome outcome = advance(body, step == 0, limit);
+        if (outcome != ADVANCED) {
+            vox_sample_write_nothing(body->model, samples.tracks, row, end);
+            return (struct end){outcome, step + 1};
+        }
+        if (step == 0 && shares) vox_first_keep(body, limit);
     }
 }
 
-/* Return whether a body has the same materials as the previous one. */
-static bool is_same(const vox_model *model, const uint8_t *material, int64_t i)
+/* Return the points that tracks record. */
+static enum sources sources_of(const struct vox_tracks *tracks)
 {
-    const uint8_t *own = material + i * model->cells;
-    return i > 0 && memcmp(own - model->cells, own, (size_t)model->cells) == 0;
+    if (tracks->body || tracks->voxels || tracks->energy || tracks->strain || tracks->momentum)
+        return SOURCE_ALL;
+    return (enum sources)((tracks->tip ? SOURCE_TIP : 0) | (tracks->face ? SOURCE_FACE : 0));
 }
 
-static enum vox_status set_body(struct body *body, const vox_model *model, const uint8_t *material)
+/* Return whether effects spread only along bonds and across pairs of voxels. */
+static bool has_cone(const vox_model *model)
 {
+    const struct vox_settings *s = &model->settings;
+    if (s->whole_body || s->fluid_drag > 0.0) return false;
+    return !s->self_collision || vox_watch_is_possible(model);
+}
+
+/* Prepare a body for samples, and decide whether it is simulated as a whole. */
+static enum vox_status prepare(struct body *body, const struct samples *samples, bool *whole)
+{
+    const vox_model *model = body->model;
+    *whole = !has_cone(model);
+    const enum sources sources = *whole ? SOURCE_ALL : sources_of(samples->tracks);
+    if (body->sources != sources) {
+        vox_cone_shape(body, sources);
+        if (!*whole && model->settings.self_collision) {
+            const enum vox_status status = vox_watch_shape(body);
+            if (status != VOX_OK) return status;
+        }
+    }
+    if (model->settings.self_collision && samples->n > 0)
+        *whole |= vox_cone_share(body, samples->steps[samples->n - 1]) > LARGEST_SHARE;
+    return VOX_OK;
+}
+
+static enum vox_status simulate(struct body *body, const uint8_t *material,
+                                const double *phase_cycles, struct samples samples,
+                                int64_t *diverged_step, uint8_t *repeated)
+{
+    bool whole;
+    vox_body_actuate(body, phase_cycles);
+    const enum vox_status status = prepare(body, &samples, &whole);
+    if (status != VOX_OK) return status;
+    struct end end = run(body, material, samples, whole);
+    *repeated = end.outcome == UNCERTAIN;
+    if (*repeated) end = run(body, material, samples, true);
+    *diverged_step = end.step;
+    return VOX_OK;
+}
+
+/* Exchange a body, which may be NULL, for one with these materials, unless it has them. */
+static enum vox_status next_body(const vox_model *model, const uint8_t *material,
+                                 struct body **body)
+{
+    if (*body && vox_body_has(*body, material)) return VOX_OK;
+    vox_body_return(model, *body);
+    *body = vox_body_take(model, material);
+    if (!*body) return VOX_NO_MEMORY;
+    if (vox_body_has(*body, material)) return VOX_OK;
     struct census census;
     const enum vox_status status = vox_body_census(model, material, &census);
-    return status == VOX_OK ? vox_body_shape(body, model, &census, material) : status;
+    return status == VOX_OK ? vox_body_shape(*body, model, &census, material) : status;
 }
 
 /* Return the sample steps of a body; the array may be NULL without samples. */
@@ -137,9 +253,10 @@ static const int64_t *own_steps(const int64_t *sample_steps, int64_t body, int64
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples,
                              const int64_t *sample_steps, const struct vox_tracks *tracks,
-                             int64_t *diverged_step, int64_t *culprit)
+                             int64_t *diverged_step, uint8_t *repeated, int64_t *culprit)
 {
     int64_t nobody;
+    uint8_t unknown;
     if (!culprit) culprit = &nobody;
     *culprit = -1;
     if (!model || !tracks) return VOX_NULL_ARGUMENT;
@@ -147,22 +264,24 @@ enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uin
     if (n_bodies > 0 && n_samples > 0 && !sample_steps) return VOX_NULL_ARGUMENT;
     if (!batch_fits(n_bodies, n_samples, model->cells)) return VOX_BAD_BATCH;
     enum vox_status status = VOX_OK;
+    int64_t steps = 0;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
         const int64_t at = i * model->cells;
+        if (!is_same(model, material, i)) steps = 0;
         status = check_body(model, material + at, phase_cycles + at, n_samples,
-                            own_steps(sample_steps, i, n_samples));
+                            own_steps(sample_steps, i, n_samples), &steps);
         *culprit = i;
     }
-    struct body *body = status == VOX_OK ? vox_body_take(model) : NULL;
-    if (status == VOX_OK && !body) status = VOX_NO_MEMORY;
+    struct body *body = NULL;
     for (int64_t i = 0; i < n_bodies && status == VOX_OK; i++) {
+        const int64_t at = i * model->cells;
+        const struct samples samples = {n_samples, own_steps(sample_steps, i, n_samples), tracks,
+                                        i * n_samples};
         *culprit = i;
-        if (!is_same(model, material, i))
-            status = set_body(body, model, material + i * model->cells);
+        status = next_body(model, material + at, &body);
         if (status != VOX_OK) break;
-        vox_body_rest(body, phase_cycles + i * model->cells);
-        diverged_step[i] = run(body, material + i * model->cells, n_samples,
-                               own_steps(sample_steps, i, n_samples), tracks, i * n_samples);
+        status = simulate(body, material + at, phase_cycles + at, samples, &diverged_step[i],
+                          repeated ? &repeated[i] : &unknown);
     }
     vox_body_return(model, body);
     if (status == VOX_OK) *culprit = -1;

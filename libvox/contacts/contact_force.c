@@ -1,14 +1,7 @@
 /* Self collision: forces between touching voxels (section 10). The engine has neither damping nor
  * friction. */
 #include "internal.h"
-
-/* Two voxels whose envelopes overlap. */
-struct touch {
-    int32_t first, second;
-    struct vec towards; /* unit, from the first to the second */
-    double distance;    /* m */
-    double overlap;     /* m */
-};
+#include "contacts/touch.h"
 
 static struct vec spin_rate(const struct voxels *v, int64_t slot)
 {
@@ -88,35 +81,14 @@ static void collide(const struct body *body, const struct touch *touch)
     turn_both(v, touch, rub);
 }
 
-/* Apply the original engine's law. */
-IN_LOOP void repel(const struct body *body, const struct touch *touch)
-{
-    const double stiffness = coupling_of(body, touch->first, touch->second)->stretch;
-    push_apart(&body->voxels, touch, vec_scale(stiffness * touch->overlap, touch->towards));
-}
-
-/* Return whether two listed voxels touch, and set the contact. */
-IN_LOOP bool touches(const struct voxels *v, struct pair pair, double half_envelope,
-                     struct touch *touch)
-{
-    const struct vec apart =
-        vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
-    const double reach = half_envelope * (v->size[pair.first] + v->size[pair.second]);
-    const double distance2 = vec_dot(apart, apart);
-    if (!(distance2 < reach * reach && distance2 > 0.0)) return false;
-    const double distance = sqrt(distance2);
-    *touch = (struct touch){pair.first, pair.second, vec_scale(1.0 / distance, apart), distance,
-                            reach - distance};
-    return true;
-}
-
 static void count_touching(struct body *body, double half_envelope)
 {
     struct voxels *v = &body->voxels;
     struct touch touch;
     for (int64_t i = 0; i < body->census.n_voxels; i++) v->touching[body->slots[i]] = 0;
     for (int64_t i = 0; i < body->contacts.now.n; i++) {
-        if (!touches(v, body->contacts.now.list[i], half_envelope, &touch)) continue;
+        const struct pair pair = body->contacts.now.list[i];
+        if (!touches(v, pair, between(v, pair), half_envelope, &touch)) continue;
         v->touching[touch.first]++;
         v->touching[touch.second]++;
     }
@@ -130,7 +102,9 @@ void vox_contacts_apply(struct body *body)
     struct touch touch;
     if (!elastic) count_touching(body, half_envelope);
     for (int64_t i = 0; i < body->contacts.now.n; i++) {
-        if (!touches(&body->voxels, body->contacts.now.list[i], half_envelope, &touch)) continue;
+        const struct pair pair = body->contacts.now.list[i];
+        if (!touches(&body->voxels, pair, between(&body->voxels, pair), half_envelope, &touch))
+            continue;
         if (elastic)
             repel(body, &touch);
         else

@@ -104,9 +104,9 @@ void vox_grid_fill(struct grid *grid, const struct body *body, double reach)
     }
     for (int64_t cube = 1; cube <= n_cubes; cube++) grid->begin[cube] += grid->begin[cube - 1];
     for (int64_t i = grid->n_skin - 1; i >= 0; i--) {
-        const int32_t slot = body->contacts.skin[i], at = --grid->begin[grid->cube_of[i]];
-        grid->voxels[at] = slot;
-        grid->packed[at] = vec_at(body->voxels.position, slot);
+        const int32_t at = --grid->begin[grid->cube_of[i]];
+        grid->voxels[at] = (int32_t)i;
+        grid->packed[at] = vec_at(body->voxels.position, body->contacts.skin[i]);
     }
 }
 
@@ -124,14 +124,14 @@ static int64_t find_in_cubes(const struct grid *grid, int64_t cube, int64_t last
     return n;
 }
 
-/* Insertion sort, for few slots. */
-static void sort(int32_t *slots, int64_t n)
+/* Insertion sort, for few numbers. */
+static void sort(int32_t *numbers, int64_t n)
 {
     for (int64_t i = 1; i < n; i++) {
-        const int32_t slot = slots[i];
+        const int32_t number = numbers[i];
         int64_t at = i;
-        for (; at > 0 && slots[at - 1] > slot; at--) slots[at] = slots[at - 1];
-        slots[at] = slot;
+        for (; at > 0 && numbers[at - 1] > number; at--) numbers[at] = numbers[at - 1];
+        numbers[at] = number;
     }
 }
 
@@ -139,8 +139,9 @@ int64_t vox_grid_find(const struct grid *grid, const struct body *body, int32_t 
 {
     double at[3];
     int64_t from[3], to[3], n = 0;
-    const struct vec position = vec_at(body->voxels.position, first);
-    coordinates(body, first, at);
+    const int32_t slot = body->contacts.skin[first];
+    const struct vec position = vec_at(body->voxels.position, slot);
+    coordinates(body, slot, at);
     for (int axis = 0; axis < 3; axis++) {
         const int64_t place = place_in(grid, axis, at[axis]);
         from[axis] = place > 0 ? place - 1 : 0;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "contacts/touch.h"
 
 /* Density of voxels, relative to the lattice, up to which the list holds all contacts. */
 static const double CROWDING = 2.0;
@@ -65,23 +65,6 @@ static enum vox_status make_room(struct body *body)
     return vox_grid_shape(&contacts->grid, n);
 }
 
-enum vox_status vox_contacts_shape(struct body *body)
-{
-    struct contacts *contacts = &body->contacts;
-    free(contacts->skin);
-    contacts->first_is_known = false;
-    contacts->skin = malloc((size_t)body->census.n_voxels * sizeof *contacts->skin);
-    if (!contacts->skin) return VOX_NO_MEMORY;
-    place_skin(body);
-    const enum vox_status status = vox_near_by_shape(body, &contacts->near_by);
-    return status == VOX_OK ? make_room(body) : status;
-}
-
-void vox_contacts_rest(struct body *body)
-{
-    body->contacts.travelled = 0.0;
-}
-
 void vox_contacts_destroy(struct contacts *contacts)
 {
     free(contacts->skin);
@@ -89,33 +72,22 @@ void vox_contacts_destroy(struct contacts *contacts)
     free(contacts->now.list);
     vox_near_by_destroy(&contacts->near_by);
     vox_grid_destroy(&contacts->grid);
+    vox_watch_destroy(&contacts->watch);
 }
 
 /* ---- building a list ------------------------------------------------------------------------- */
 
-/* Distances below which a pair is listed, m. */
-struct limits {
-    double reach;   /* of any list */
-    double engine;  /* of the original engine's list, or infinite */
-    double horizon; /* of the original engine's list, in sizes of the first voxel, or infinite */
-};
-
-static struct limits limits_of(const vox_model *model)
+struct limits vox_contacts_limits(const vox_model *model)
 {
     const struct vox_settings *s = &model->settings;
     if (s->complete_contacts) return (struct limits){vox_contacts_reach(model), HUGE_VAL, HUGE_VAL};
     return (struct limits){vox_contacts_reach(model), engine_reach(s), s->collision_horizon};
 }
 
-/* Return whether a pair is listed; pairs exactly at the original engine's reach are not. */
 IN_LOOP bool is_due(const struct voxels *v, struct pair pair, const struct limits *limits)
 {
-    const struct vec apart =
-        vec_sub(vec_at(v->position, pair.second), vec_at(v->position, pair.first));
-    const double distance2 = vec_dot(apart, apart);
-    if (distance2 >= limits->reach * limits->reach) return false;
-    const double distance = sqrt(distance2);
-    return distance < limits->horizon * v->size[pair.first] && distance < limits->engine;
+    const struct vec apart = between(v, pair);
+    return is_listed(limits, v->size[pair.first], vec_dot(apart, apart));
 }
 
 static bool has_strayed(const struct body *body)
@@ -141,7 +113,7 @@ static bool list_one(struct contacts *contacts, struct pair pair)
 static bool list_from_near_by(struct body *body)
 {
     const struct pairs *pairs = &body->contacts.near_by.pairs;
-    const struct limits limits = limits_of(body->model);
+    const struct limits limits = vox_contacts_limits(body->model);
     for (int64_t i = 0; i < pairs->n; i++)
         if (is_due(&body->voxels, pairs->list[i], &limits) &&
             !list_one(&body->contacts, pairs->list[i]))
@@ -152,13 +124,12 @@ static bool list_from_near_by(struct body *body)
 static bool list_from_grid(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
-    const struct limits limits = limits_of(body->model);
+    const struct limits limits = vox_contacts_limits(body->model);
     vox_grid_fill(&contacts->grid, body, limits.reach);
     for (int64_t i = 0; i < contacts->n_skin; i++) {
-        const int32_t first = contacts->skin[i];
-        const int64_t n = vox_grid_find(&contacts->grid, body, first);
+        const int64_t n = vox_grid_find(&contacts->grid, body, (int32_t)i);
         for (int64_t k = 0; k < n; k++) {
-            const struct pair pair = {first, contacts->grid.found[k]};
+            const struct pair pair = {contacts->skin[i], contacts->skin[contacts->grid.found[k]]};
             if (!is_due(&body->voxels, pair, &limits) ||
                 !vox_near_by_may_collide(body, &contacts->near_by, pair))
                 continue;
@@ -180,26 +151,36 @@ static void copy(struct pairs *to, const struct pairs *from)
     if (from->n > 0) memcpy(to->list, from->list, (size_t)from->n * sizeof *from->list);
 }
 
-/* Reuse the list at rest, which is the same for all controllers of a body. */
-static bool list_at_rest(struct body *body)
+/* ---- a body ---------------------------------------------------------------------------------- */
+
+enum vox_status vox_contacts_shape(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
-    if (contacts->first_is_known) {
-        copy(&contacts->now, &contacts->first);
-        return true;
-    }
-    if (!list_contacts(body)) return false;
+    free(contacts->skin);
+    contacts->skin = malloc((size_t)body->census.n_voxels * sizeof *contacts->skin);
+    if (!contacts->skin) return VOX_NO_MEMORY;
+    place_skin(body);
+    enum vox_status status = vox_near_by_shape(body, &contacts->near_by);
+    if (status == VOX_OK) status = make_room(body);
+    if (status != VOX_OK) return status;
+    list_contacts(body); /* a body at rest is not crowded */
     copy(&contacts->first, &contacts->now);
-    contacts->first_is_known = true;
-    return true;
+    return VOX_OK;
 }
 
-bool vox_contacts_refresh(struct body *body, bool first_step)
+void vox_contacts_rest(struct body *body)
+{
+    struct contacts *contacts = &body->contacts;
+    contacts->travelled = 0.0;
+    copy(&contacts->now, &contacts->first);
+}
+
+bool vox_contacts_refresh(struct body *body)
 {
     const struct vox_settings *settings = &body->model->settings;
     struct contacts *contacts = &body->contacts;
     contacts->travelled += body->top_speed * body->census.dt / settings->voxel_size;
-    if (!first_step && contacts->travelled <= leeway(settings)) return true;
+    if (contacts->travelled <= leeway(settings)) return true;
     contacts->travelled = 0.0;
-    return first_step ? list_at_rest(body) : list_contacts(body);
+    return list_contacts(body);
 }

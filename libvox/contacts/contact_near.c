@@ -1,31 +1,31 @@
 /* Self collision: pairs that can touch as long as no voxel is far from its start. The search for
- * voxels in near cells that are not connected by a few bonds processes 64 slots at a time. */
+ * voxels in near cells that are not connected by a few bonds processes 64 cells at a time. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "internal.h"
 
-/* ---- bits, one for each slot ----------------------------------------------------------------- */
+/* ---- bits, one for each cell of the box ------------------------------------------------------ */
 
 static int64_t words_of(const struct body *body)
 {
     return (body->n_slots + 63) / 64;
 }
 
-static bool is_set(const uint64_t *bits, int64_t slot)
+static bool is_set(const uint64_t *bits, int64_t cell)
 {
-    return bits[slot / 64] >> slot % 64 & 1;
+    return bits[cell / 64] >> cell % 64 & 1;
 }
 
-static void set(uint64_t *bits, int64_t slot)
+static void set(uint64_t *bits, int64_t cell)
 {
-    bits[slot / 64] |= (uint64_t)1 << slot % 64;
+    bits[cell / 64] |= (uint64_t)1 << cell % 64;
 }
 
-/* Return 64 bits starting at a slot; bits before and after all slots are 0. */
-static uint64_t bits_from(const uint64_t *bits, int64_t n_words, int64_t slot)
+/* Return 64 bits starting at a cell; bits before and after all cells are 0. */
+static uint64_t bits_from(const uint64_t *bits, int64_t n_words, int64_t cell)
 {
-    const int64_t word = slot >= 0 ? slot / 64 : -((63 - slot) / 64), shift = slot - 64 * word;
+    const int64_t word = cell >= 0 ? cell / 64 : -((63 - cell) / 64), shift = cell - 64 * word;
     const uint64_t low = word >= 0 && word < n_words ? bits[word] : 0;
     if (shift == 0) return low;
     const uint64_t high = word + 1 >= 0 && word + 1 < n_words ? bits[word + 1] : 0;
@@ -43,9 +43,11 @@ static int lowest(uint64_t word)
 #endif
 }
 
-static int64_t slots_by(const struct body *body, const int32_t by[3])
+/* Return the difference of the indices of two cells in the box. */
+static int64_t cells_by(const struct body *body, const int32_t by[3])
 {
-    return by[0] + by[1] * body->step[1] + by[2] * body->step[2];
+    const int64_t *length = body->census.length;
+    return by[0] + length[0] * (by[1] + length[1] * by[2]);
 }
 
 /* ---- voxels that are connected by a few bonds ------------------------------------------------ */
@@ -59,7 +61,7 @@ static void join(const struct body *body, const struct near_by *near_by, int64_t
     for (int32_t way = 0; way < place->n_ways; way++) {
         const uint64_t *before = near_by->joined + place->from[way] * n_words;
         const uint64_t *bonds = near_by->bonds + place->side[way] * n_words;
-        const int64_t by = slots_by(body, places[place->from[way]].by);
+        const int64_t by = cells_by(body, places[place->from[way]].by);
         for (int64_t word = 0; word < n_words; word++)
             joined[word] |= before[word] & bits_from(bonds, n_words, 64 * word + by);
     }
@@ -71,10 +73,10 @@ static void join_all(const struct body *body, const struct near_by *near_by)
     memset(near_by->joined, 0, (size_t)body->model->vicinity.n_places * size);
     memset(near_by->bonds, 0, 6 * size);
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const int64_t slot = body->slots[i];
-        set(near_by->joined, slot); /* the first place is the voxel itself */
+        const int64_t slot = body->slots[i], cell = box_cell(body, slot);
+        set(near_by->joined, cell); /* the first place is the voxel itself */
         for (int side = 0; side < 6; side++)
-            if (body->bonded[slot] >> side & 1) set(near_by->bonds + side * words_of(body), slot);
+            if (body->bonded[slot] >> side & 1) set(near_by->bonds + side * words_of(body), cell);
     }
     for (int64_t place = 1; place < body->model->vicinity.n_places; place++)
         join(body, near_by, place);
@@ -128,18 +130,19 @@ bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, s
     int32_t by[3];
     set_offset(body, pair, by);
     const int64_t place = vox_vicinity_index(&body->model->vicinity, by);
-    if (place >= 0 && is_set(near_by->joined + place * words_of(body), pair.first)) return false;
+    if (place >= 0 && is_set(near_by->joined + place * words_of(body), box_cell(body, pair.first)))
+        return false;
     return !is_joined_around(body, &near_by->search, pair, by);
 }
 
 /* ---- the list -------------------------------------------------------------------------------- */
 
 /* Return which of 64 skin voxels have another one in a near cell without a shortest path of bonds.
- * An offset across the border of the box gives the cell with that slot. */
+ * An offset across the border of the box gives the cell with that index. */
 static uint64_t candidates(const struct body *body, const struct near_by *near_by,
                            const struct near_cell *cell, int64_t word)
 {
-    const int64_t n_words = words_of(body), from = 64 * word + slots_by(body, cell->by);
+    const int64_t n_words = words_of(body), from = 64 * word + cells_by(body, cell->by);
     uint64_t bits = near_by->skin[word] & bits_from(near_by->skin, n_words, from);
     bits &= ~(near_by->held[word] & bits_from(near_by->held, n_words, from));
     return cell->place < 0 ? bits : bits & ~near_by->joined[cell->place * n_words + word];
@@ -160,11 +163,11 @@ static void visit(const struct body *body, const struct near_by *near_by, int64_
     const struct vicinity *vicinity = &body->model->vicinity;
     for (int64_t i = 0; i < vicinity->n_cells; i++) {
         const struct near_cell *cell = &vicinity->cells[i];
-        const int64_t by = slots_by(body, cell->by);
+        const int64_t by = cells_by(body, cell->by);
         for (int64_t word = 0; word < words_of(body); word++) {
             for (uint64_t left = candidates(body, near_by, cell, word); left; left &= left - 1) {
                 const int64_t first = 64 * word + lowest(left);
-                const struct pair pair = {(int32_t)first, (int32_t)(first + by)};
+                const struct pair pair = {body->slot_of[first], body->slot_of[first + by]};
                 if (!is_at(body, pair, cell->by)) continue;
                 if (list) list[begin[first]] = pair;
                 begin[first]++;
@@ -195,9 +198,9 @@ static void mark_skin(const struct body *body, const struct near_by *near_by)
     memset(near_by->skin, 0, size);
     memset(near_by->held, 0, size);
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
-        const int64_t slot = body->slots[i];
-        if (body->bonded[slot] != ALL_SIDES) set(near_by->skin, slot);
-        if (body->voxels.fixed[slot] == VOX_FIX_ALL) set(near_by->held, slot);
+        const int64_t slot = body->slots[i], cell = box_cell(body, slot);
+        if (body->bonded[slot] != ALL_SIDES) set(near_by->skin, cell);
+        if (body->voxels.fixed[slot] == VOX_FIX_ALL) set(near_by->held, cell);
     }
 }
 
@@ -245,8 +248,8 @@ enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_
     join_all(body, near_by);
     mark_skin(body, near_by);
     visit(body, near_by, near_by->begin + 1, NULL);
-    for (int64_t slot = 0; slot < body->n_slots; slot++)
-        near_by->begin[slot + 1] += near_by->begin[slot];
+    for (int64_t cell = 0; cell < body->n_slots; cell++)
+        near_by->begin[cell + 1] += near_by->begin[cell];
     near_by->pairs.n = near_by->begin[body->n_slots];
     if (!vox_pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
     visit(body, near_by, near_by->begin, near_by->pairs.list);

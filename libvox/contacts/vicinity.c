@@ -50,13 +50,13 @@ static void append_shell(struct vicinity *vicinity, int64_t steps)
 
 /* ---- the cells within a radius --------------------------------------------------------------- */
 
-/* Return whether an offset in the lattice leads to a later slot. */
+/* Return whether an offset in the lattice leads to a later cell. */
 static bool leads_on(int32_t x, int32_t y, int32_t z)
 {
     return z > 0 || (z == 0 && (y > 0 || (y == 0 && x > 0)));
 }
 
-/* Append the later cells within a radius, in edges, in the order of their slots. */
+/* Append the later cells within a radius, in edges, in their order. */
 static void append_cells(struct vicinity *vicinity, double radius)
 {
     const int32_t most = (int32_t)radius;

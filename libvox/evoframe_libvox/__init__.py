@@ -235,10 +235,12 @@ class Result:
             ``float64[N, S, 2]``, smallest and largest strain of a bond; ``momentum`` is
             ``float64[N, S, 6]``, linear in kg m/s and angular about the origin in kg m2/s.
         diverged_step: ``int64[N]``; 0, or the step (from 1) at which the body diverged.
+        repeated: ``bool[N]``; whether the whole body had to be simulated, after what can affect the samples.
     """
 
     tracks: dict[Track, NDArray[np.float64]]
     diverged_step: NDArray[np.int64]
+    repeated: NDArray[np.bool_]
 
 
 class Model:
@@ -379,6 +381,7 @@ class Model:
             raise ValueError(f"unknown tracks {', '.join(unknown)}; tracks: {', '.join(shapes)}")
         out: dict[Track, NDArray[np.float64]] = {name: np.empty(shapes[name]) for name in tracks}
         diverged_step = np.empty(n, np.int64)
+        repeated = np.zeros(n, np.uint8)
         culprit = ffi.new("int64_t *")
         pointers = {name: ffi.from_buffer("double[]", track) for name, track in out.items()}
         status = lib.vox_simulate(
@@ -390,12 +393,13 @@ class Model:
             ffi.from_buffer("int64_t[]", samples),
             ffi.new("struct vox_tracks *", pointers),
             ffi.from_buffer("int64_t[]", diverged_step),
+            ffi.from_buffer("uint8_t[]", repeated),
             culprit,
         )
         _check_batch(status, culprit[0])
         if "voxels" in out:
             out["voxels"] = np.ascontiguousarray(out["voxels"].transpose(0, 1, 4, 3, 2, 5))
-        return Result(out, diverged_step)
+        return Result(out, diverged_step, repeated != 0)
 
     def _track_shapes(self, n: int, samples: int) -> dict[Track, tuple[int, ...]]:
         """Return the shapes of the arrays that the solver writes."""

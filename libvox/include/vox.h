@@ -215,7 +215,7 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples,
                              const int64_t *sample_steps, const struct vox_tracks *tracks,
-                             int64_t *diverged_step, int64_t *culprit);
+                             int64_t *diverged_step, uint8_t *repeated, int64_t *culprit);
 
 /* Range of a setting, or of a property of a material. */
 struct vox_range {

@@ -193,22 +193,24 @@ IN_LOOP bool bond_apply(const struct body *body, enum axis axis, int64_t lower, 
 }
 
 /* The axis is a constant in each call. */
-IN_LOOP bool bonds_along(const struct body *body, enum axis axis, double most, double per_second)
+IN_LOOP bool bonds_along(const struct body *body, enum axis axis, double most, double per_second,
+                         double limit)
 {
     const struct bonds *bonds = &body->bonds[axis];
     bool fine = true;
     for (int64_t i = 0; i < bonds->n; i++)
-        fine &= bond_apply(body, axis, bonds->lower[i], most, per_second);
+        if (bonds->depth[bonds->lower[i]] <= limit)
+            fine &= bond_apply(body, axis, bonds->lower[i], most, per_second);
     return fine;
 }
 
-bool vox_scalar_bonds_apply(struct body *body, double per_second)
+bool vox_scalar_bonds_apply(struct body *body, double per_second, double limit)
 {
     const struct vox_settings *s = &body->model->settings;
     const double most = s->largest_strain * s->voxel_size;
-    bool fine = bonds_along(body, AXIS_X, most, per_second);
-    fine &= bonds_along(body, AXIS_Y, most, per_second);
-    fine &= bonds_along(body, AXIS_Z, most, per_second);
+    bool fine = bonds_along(body, AXIS_X, most, per_second, limit);
+    fine &= bonds_along(body, AXIS_Y, most, per_second, limit);
+    fine &= bonds_along(body, AXIS_Z, most, per_second, limit);
     return fine;
 }
 

@@ -35,7 +35,7 @@ static struct quat turned(struct quat q, struct vec spin_rate, double dt)
     const double half = 0.5 * dt;
     const struct quat r = {q.w + half * rate.w, q.x + half * rate.x, q.y + half * rate.y,
                            q.z + half * rate.z};
-    const double norm = 1.0 / sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
+    const double norm = 1.0 / sqrt(r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w);
     if (r.w * norm >= 1.0) return (struct quat){1.0, 0.0, 0.0, 0.0};
     return (struct quat){r.w * norm, r.x * norm, r.y * norm, r.z * norm};
 }
@@ -111,19 +111,28 @@ bool vox_voxel_advance(struct body *body, int64_t slot)
     return voxel_move(body, slot);
 }
 
-bool vox_scalar_voxels_advance(struct body *body)
+bool vox_scalar_voxels_advance(struct body *body, double limit)
 {
     const struct voxels *v = &body->voxels;
-    const struct actuation actuation = vox_actuation_at(body->model, body->time);
     bool fine = true;
     body->top_speed = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
+        if (body->depth[slot] > limit) continue;
         if (v->fixed[slot] != VOX_FIX_ALL) fine &= vox_voxel_advance(body, slot);
-        v->size[slot] = size_of(&actuation, v->amplitude[slot], v->phase[slot], v->size[slot]);
         vec_put(v->force, slot, (struct vec){0.0, 0.0, 0.0});
         vec_put(v->torque, slot, (struct vec){0.0, 0.0, 0.0});
     }
-    body->time += body->census.dt;
     return fine;
+}
+
+void vox_scalar_sizes_advance(struct body *body, double limit)
+{
+    const struct voxels *v = &body->voxels;
+    const struct actuation actuation = vox_actuation_at(body->model, body->time);
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        if (body->depth[slot] > limit) continue;
+        v->size[slot] = size_of(&actuation, v->amplitude[slot], v->phase[slot], v->size[slot]);
+    }
 }

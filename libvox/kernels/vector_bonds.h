@@ -1,5 +1,12 @@
 /* The bond law (sections 5 and 6) of the fast kernel; included by vector_kernel.h. */
 
+/* What applies to all bonds in a step. */
+struct span {
+    double per_second; /* 1/dt, or 0 in the first step */
+    double limit;      /* depth up to which bonds are computed */
+    double most;       /* m, largest stretch */
+};
+
 /* ---- rotations ------------------------------------------------------------------------------- */
 
 /* A rotation as a matrix: cheaper than a quaternion for several vectors. */
@@ -52,11 +59,13 @@ struct frames {
     lanes entries[9];
 } IN_LINES;
 
-IN_LOOP void find_frames(const struct voxels *v, int64_t base, struct frames *restrict frames)
+IN_LOOP void find_frames(const struct voxels *v, int64_t base, struct range range,
+                         struct frames *restrict frames)
 {
     const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
     const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
-    for (int64_t i = 0; i < TILE; i++) {
+    FOR_LANES(i, range)
+    {
         const struct matrix m = matrix_of((struct quat){qw[i], qx[i], qy[i], qz[i]});
         frames->entries[0][i] = m.x.x;
         frames->entries[1][i] = m.x.y;
@@ -82,17 +91,18 @@ IN_LOOP struct matrix frame_at(const struct frames *frames, int64_t i)
 /* Determine the bonds' upper ends relative to the lower ones, and their frames; return the number
  * of bonds in the large frame. */
 IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axis axis,
-                     int64_t base, const struct frames *restrict frames,
-                     struct sight *restrict sight)
+                     int64_t base, struct range range, double limit,
+                     const struct frames *restrict frames, struct sight *restrict sight)
 {
     const int64_t step = bonds->step;
     const double *restrict px = v->position.x + base, *restrict py = v->position.y + base;
     const double *restrict pz = v->position.z + base, *restrict size = v->size + base;
     const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
     const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
-    const double *restrict there = bonds->there + base, *restrict was_small = bonds->small + base;
-    int64_t large = 0;
-    for (int64_t i = 0; i < TILE; i++) {
+    const double *restrict depth = bonds->depth + base, *restrict was_small = bonds->small + base;
+    counts large = {0};
+    FOR_LANES(i, range)
+    {
         const struct quat lower = {qw[i], qx[i], qy[i], qz[i]};
         const struct quat upper = {qw[i + step], qx[i + step], qy[i + step], qz[i + step]};
         const struct vec apart = {px[i + step] - px[i], py[i + step] - py[i], pz[i + step] - pz[i]};
@@ -118,9 +128,9 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         sight->relative[3][i] = turned_axis.z;
         sight->rest[i] = rest;
         sight->small[i] = choose(is, 1.0, 0.0);
-        large += (there[i] != 0.0) & !is;
+        large[i - group] += (depth[i] <= limit) & !is;
     }
-    return large;
+    return sum_of(large);
 }
 
 /* The rotation of a direction onto +x, as in bond.c; its x is 0. */
@@ -136,10 +146,12 @@ IN_LOOP struct quat onto_x(struct vec u, double length)
 
 /* Transform the bonds in the large frame; return the number of bonds that are turned too far to
  * replace the arc by the chord. */
-IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict sight)
+IN_LOOP int64_t straighten(const double *restrict depth, struct range range, double limit,
+                           struct sight *restrict sight)
 {
-    int64_t far = 0;
-    for (int64_t i = 0; i < TILE; i++) {
+    counts far = {0};
+    FOR_LANES(i, range)
+    {
         const struct vec u = {sight->stretch[0][i], sight->stretch[1][i], sight->stretch[2][i]};
         const struct quat r = {sight->relative[0][i], sight->relative[1][i], sight->relative[2][i],
                                sight->relative[3][i]};
@@ -159,10 +171,10 @@ IN_LOOP int64_t straighten(const double *restrict there, struct sight *restrict 
         sight->stretch[0][i] = choose(small, u.x, length);
         sight->stretch[1][i] = choose(small, u.y, 0.0);
         sight->stretch[2][i] = choose(small, u.z, 0.0);
-        far += (there[i] != 0.0) &
+        far[i - group] += (depth[i] <= limit) &
                ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
     }
-    return far;
+    return sum_of(far);
 }
 
 /* Ratio of the lengths of a rotation vector and of its quaternion's vector part, as in bond.c: the
@@ -179,10 +191,10 @@ IN_LOOP double arc_ratio(double cosine, bool far)
 
 /* ---- forces of bonds ------------------------------------------------------------------------- */
 
-/* Forces and moments of the bonds of a tile on their ends, in the world. */
+/* Forces and moments of the bonds of a tile on their lower ends, summed over the axes. Moments of
+ * bonds in the small frame are in the axes of the lower end, which are turned only once. */
 struct loads {
-    lanes force_lower[3], moment_lower[3]; /* summed over the axes */
-    lanes force_upper[3], moment_upper[3];
+    lanes force[3], moment[3], own_moment[3];
 } IN_LINES;
 
 IN_LOOP void add(lanes to[3], int64_t i, bool there, struct vec v)
@@ -190,13 +202,6 @@ IN_LOOP void add(lanes to[3], int64_t i, bool there, struct vec v)
     to[0][i] += choose(there, v.x, 0.0);
     to[1][i] += choose(there, v.y, 0.0);
     to[2][i] += choose(there, v.z, 0.0);
-}
-
-IN_LOOP void put(lanes to[3], int64_t i, bool there, struct vec v)
-{
-    to[0][i] = choose(there, v.x, 0.0);
-    to[1][i] = choose(there, v.y, 0.0);
-    to[2][i] = choose(there, v.z, 0.0);
 }
 
 /* Stiffnesses and dampers of the bond in a slot. */
@@ -211,30 +216,83 @@ IN_LOOP struct coupling coupling_in(const struct bonds *bonds, int64_t i)
 #undef LOAD
 }
 
-/* Stretch and turns of both ends, or their rates. */
-struct change {
-    struct vec p, a, b;
+/* Factor of a deformation, and of the same deformation one step before: spring and damper as one
+ * linear function. */
+struct factors {
+    double now, last;
 };
 
-/* Force of a spring, or of a damper with its constants, on an end in the bond's frame. */
-IN_LOOP struct vec force_of(double stretch, double shear, double bend_shear, const struct change *c)
+IN_LOOP struct factors factors_of(double stiffness, double damping, double per_second)
 {
-    return (struct vec){
-        stretch * c->p.x,
-        shear * c->p.y - bend_shear * (c->a.z + c->b.z),
-        shear * c->p.z + bend_shear * (c->a.y + c->b.y),
+    return (struct factors){stiffness + damping * per_second, damping * per_second};
+}
+
+IN_LOOP double load_of(struct factors factors, double now, double last)
+{
+    return factors.now * now - factors.last * last;
+}
+
+/* The bond law for one end. */
+struct law {
+    struct factors stretch, shear, bend_shear, moment_shear, bend, twist;
+};
+
+IN_LOOP struct law law_of(const struct coupling *c, const struct damper *damper, double per_second)
+{
+    return (struct law){
+        .stretch = factors_of(c->stretch, damper->stretch, per_second),
+        .shear = factors_of(c->shear, damper->shear, per_second),
+        .bend_shear = factors_of(c->bend_shear, damper->bend_shear, per_second),
+        .moment_shear = factors_of(c->bend_shear, damper->moment_shear, per_second),
+        .bend = factors_of(c->bend, damper->bend, per_second),
+        .twist = factors_of(c->twist, damper->twist, per_second),
     };
 }
 
-/* Moment of a spring or damper on the end that turned by `own`, which counts twice. */
-IN_LOOP struct vec moment_of(double twist, double bend_shear, double bend, const struct change *c,
-                             struct vec own)
+/* Stretch of a bond and turns of both ends; the lower end does not turn about the bond. */
+struct deformation {
+    struct vec p, a, b;
+    double a_and_b_y, a_and_b_z; /* sums */
+};
+
+/* Force on an end in the bond's frame. */
+IN_LOOP struct vec force_of(const struct law *law, const struct deformation *now,
+                            const struct deformation *last)
+{
+    return (struct vec){
+        load_of(law->stretch, now->p.x, last->p.x),
+        load_of(law->shear, now->p.y, last->p.y) -
+            load_of(law->bend_shear, now->a_and_b_z, last->a_and_b_z),
+        load_of(law->shear, now->p.z, last->p.z) +
+            load_of(law->bend_shear, now->a_and_b_y, last->a_and_b_y),
+    };
+}
+
+/* Moment on the end that has turned by `own`, which counts twice, and before by `own_last`. */
+IN_LOOP struct vec moment_of(const struct law *law, const struct deformation *now,
+                             const struct deformation *last, double twist, struct vec own,
+                             struct vec own_last)
 {
     return (struct vec){
         twist,
-        bend_shear * c->p.z + bend * ((c->a.y + c->b.y) + own.y),
-        bend * ((c->a.z + c->b.z) + own.z) - bend_shear * c->p.y,
+        load_of(law->moment_shear, now->p.z, last->p.z) +
+            load_of(law->bend, now->a_and_b_y + own.y, last->a_and_b_y + own_last.y),
+        load_of(law->bend, now->a_and_b_z + own.z, last->a_and_b_z + own_last.z) -
+            load_of(law->moment_shear, now->p.y, last->p.y),
     };
+}
+
+/* Write a vector to a slot, or 0. */
+IN_LOOP void put(struct vecs to, int64_t i, bool there, struct vec v)
+{
+    to.x[i] = choose(there, v.x, 0.0);
+    to.y[i] = choose(there, v.y, 0.0);
+    to.z[i] = choose(there, v.z, 0.0);
+}
+
+IN_LOOP struct vecs from_slot(struct vecs a, int64_t slot)
+{
+    return (struct vecs){a.x + slot, a.y + slot, a.z + slot};
 }
 
 /* The orientation of a bond in the large frame: lower * (w, 0, -y, -z), the latter in the bond's
@@ -256,23 +314,28 @@ IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, dou
  * that some bonds are in the large frame, or are turned far. */
 IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
                      const struct coupling *coupling, enum axis axis, int64_t base,
-                     double per_second, double most, bool large, bool far,
+                     struct range range, const struct span *span, bool large, bool far,
                      const struct frames *restrict frames, const struct sight *restrict sight,
                      struct loads *restrict loads)
 {
     const double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
     const double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
-    const double *restrict is_there = bonds->there + base;
+    const double *restrict depth = bonds->depth + base;
     double *restrict small = bonds->small + base;
     double *restrict last_x = bonds->stretch.x + base, *restrict last_y = bonds->stretch.y + base;
     double *restrict last_z = bonds->stretch.z + base;
     double *restrict lower_y = bonds->lower_y + base, *restrict lower_z = bonds->lower_z + base;
     double *restrict upper_x = bonds->upper.x + base, *restrict upper_y = bonds->upper.y + base;
     double *restrict upper_z = bonds->upper.z + base;
-    int64_t overstrained = 0;
-    NO_LANE_DEPENDS_ON_ANOTHER
-    for (int64_t i = 0; i < TILE; i++) {
+    const struct vecs force_upper = from_slot(bonds->pull, base);
+    const struct vecs moment_upper = from_slot(bonds->wrench, base);
+    const double limit = span->limit, most = span->most;
+    counts overstrained = {0};
+    FOR_LANES(i, range)
+    {
         const struct coupling c = coupling ? *coupling : coupling_in(bonds, base + i);
+        const struct law law = law_of(&c, &c.lower, span->per_second);
+        const bool there = depth[i] <= limit, is_small = sight->small[i] != 0.0;
         const struct vec p = {sight->stretch[0][i] - sight->rest[i], sight->stretch[1][i],
                               sight->stretch[2][i]};
         const struct quat r = {sight->relative[0][i], sight->relative[1][i], sight->relative[2][i],
@@ -288,16 +351,21 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
         }
         const double k = arc_ratio(r.w, far);
         const struct vec b = {k * r.x, k * r.y, k * r.z};
+        const struct deformation now = {p, a, b, large ? a.y + b.y : b.y, large ? a.z + b.z : b.z};
 
-        /* a change of frame keeps the history for the next rates */
+        /* a change of frame has no rates, and keeps the history for the next ones */
         const bool same = sight->small[i] == small[i];
-        const double rate = choose(same, per_second, 0.0);
-        const struct change now = {p, a, b};
-        const struct change speed = {
-            {rate * (p.x - last_x[i]), rate * (p.y - last_y[i]), rate * (p.z - last_z[i])},
-            {0.0, rate * (a.y - lower_y[i]), rate * (a.z - lower_z[i])},
-            {rate * (b.x - upper_x[i]), rate * (b.y - upper_y[i]), rate * (b.z - upper_z[i])},
+        struct deformation last = {
+            {choose(same, last_x[i], p.x), choose(same, last_y[i], p.y),
+             choose(same, last_z[i], p.z)},
+            {0.0, choose(same, lower_y[i], a.y), choose(same, lower_z[i], a.z)},
+            {choose(same, upper_x[i], b.x), choose(same, upper_y[i], b.y),
+             choose(same, upper_z[i], b.z)},
+            0.0,
+            0.0,
         };
+        last.a_and_b_y = last.a.y + last.b.y;
+        last.a_and_b_z = last.a.z + last.b.z;
         small[i] = sight->small[i];
         last_x[i] = choose(same, p.x, last_x[i]);
         last_y[i] = choose(same, p.y, last_y[i]);
@@ -308,110 +376,117 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
         upper_y[i] = choose(same, b.y, upper_y[i]);
         upper_z[i] = choose(same, b.z, upper_z[i]);
 
-        const struct damper *lower_end = &c.lower, *upper_end = coupling ? &c.lower : &c.upper;
-        const struct vec spring = force_of(c.stretch, c.shear, c.bend_shear, &now);
-        const struct vec brake =
-            force_of(lower_end->stretch, lower_end->shear, lower_end->bend_shear, &speed);
-        const double twist = c.twist * b.x, twisting = speed.b.x;
-        const struct vec moment_lower =
-            vec_add(moment_of(-twist, c.bend_shear, c.bend, &now, a),
-                    moment_of(-lower_end->twist * twisting, lower_end->moment_shear,
-                              lower_end->bend, &speed, speed.a));
-        const struct vec moment_upper =
-            vec_add(moment_of(twist, c.bend_shear, c.bend, &now, b),
-                    moment_of(upper_end->twist * twisting, upper_end->moment_shear, upper_end->bend,
-                              &speed, speed.b));
         const struct matrix m = large ? matrix_of(frame) : frame_at(frames, i);
-        const bool there = is_there[i] != 0.0;
-        const struct vec force_lower = turn(&m, x_to_axis(axis, vec_add(spring, brake)));
-        add(loads->force_lower, i, there, force_lower);
-        add(loads->moment_lower, i, there, turn(&m, x_to_axis(axis, moment_lower)));
-        put(loads->moment_upper, i, there, turn(&m, x_to_axis(axis, moment_upper)));
+        const struct vec force = turn(&m, x_to_axis(axis, force_of(&law, &now, &last)));
+        const double twist = load_of(law.twist, b.x, last.b.x);
+        const struct vec moment_lower =
+            x_to_axis(axis, moment_of(&law, &now, &last, -twist, a, last.a));
+        add(loads->force, i, there, force);
+        add(loads->own_moment, i, there & is_small, moment_lower);
+        if (large) add(loads->moment, i, there & !is_small, turn(&m, moment_lower));
         if (coupling) {
-            put(loads->force_upper, i, there, force_lower);
+            put(force_upper, i, there, force);
+            const struct vec moment = moment_of(&law, &now, &last, twist, b, last.b);
+            put(moment_upper, i, there, turn(&m, x_to_axis(axis, moment)));
         } else {
-            const struct vec own =
-                force_of(upper_end->stretch, upper_end->shear, upper_end->bend_shear, &speed);
-            put(loads->force_upper, i, there, turn(&m, x_to_axis(axis, vec_add(spring, own))));
+            const struct law other = law_of(&c, &c.upper, span->per_second);
+            const struct vec own = force_of(&other, &now, &last);
+            const struct vec moment = moment_of(&other, &now, &last,
+                                                load_of(other.twist, b.x, last.b.x), b, last.b);
+            put(force_upper, i, there, turn(&m, x_to_axis(axis, own)));
+            put(moment_upper, i, there, turn(&m, x_to_axis(axis, moment)));
         }
-        overstrained += there & !(fabs(p.x) <= most);
+        overstrained[i - group] += there & !(fabs(p.x) <= most);
     }
-    return overstrained;
-}
-
-IN_LOOP void add_lanes(double *restrict to, const double *restrict from)
-{
-    for (int64_t i = 0; i < TILE; i++) to[i] += from[i];
-}
-
-IN_LOOP void subtract_lanes(double *restrict to, const double *restrict from)
-{
-    for (int64_t i = 0; i < TILE; i++) to[i] -= from[i];
-}
-
-/* Add the forces and moments on lower or upper ends to the voxels; forces on both ends have
- * opposite signs. */
-IN_LOOP void unload(const struct voxels *v, int64_t base, const lanes force[3],
-                    const lanes moment[3], bool upper)
-{
-    double *const forces[] = {v->force.x, v->force.y, v->force.z};
-    double *const torques[] = {v->torque.x, v->torque.y, v->torque.z};
-    for (int i = 0; i < 3; i++) {
-        if (upper)
-            subtract_lanes(forces[i] + base, force[i]);
-        else
-            add_lanes(forces[i] + base, force[i]);
-        subtract_lanes(torques[i] + base, moment[i]);
-    }
+    return sum_of(overstrained);
 }
 
 IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupling, enum axis axis,
-                           int64_t base, double per_second, double most,
+                           int64_t base, struct range range, const struct span *span,
                            const struct frames *frames, struct loads *loads)
 {
-    if (!body->bonds[axis].tile_used[base / TILE]) return true;
+    if (range.first == range.last) return true;
     const struct voxels *v = &body->voxels;
     const struct bonds *b = &body->bonds[axis];
     struct sight sight;
-    int64_t overstrained;
-    if (look(v, b, axis, base, frames, &sight) == 0)
-        overstrained =
-            pull(v, b, coupling, axis, base, per_second, most, false, false, frames, &sight, loads);
-    else if (straighten(b->there + base, &sight) == 0)
-        overstrained =
-            pull(v, b, coupling, axis, base, per_second, most, true, false, frames, &sight, loads);
-    else
-        overstrained =
-            pull(v, b, coupling, axis, base, per_second, most, true, true, frames, &sight, loads);
-    unload(v, base + b->step, loads->force_upper, loads->moment_upper, true);
-    return overstrained == 0;
+    if (look(v, b, axis, base, range, span->limit, frames, &sight) == 0)
+        return pull(v, b, coupling, axis, base, range, span, false, false, frames, &sight,
+                    loads) == 0;
+    if (straighten(b->depth + base, range, span->limit, &sight) == 0)
+        return pull(v, b, coupling, axis, base, range, span, true, false, frames, &sight,
+                    loads) == 0;
+    return pull(v, b, coupling, axis, base, range, span, true, true, frames, &sight, loads) == 0;
+}
+
+/* Set one component of the forces on the voxels of a tile: the forces on them as lower ends of bonds,
+ * less the pulls on them as upper ends, which belong to this tile or to earlier ones. */
+IN_LOOP void collect(double *restrict total, const double *restrict lower, const double *along_x,
+                     const double *along_y, const double *along_z)
+{
+    NO_LANE_DEPENDS_ON_ANOTHER
+    for (int64_t i = 0; i < TILE; i++) total[i] = ((lower[i] - along_x[i]) - along_y[i]) - along_z[i];
+}
+
+/* Set the forces and torques on the voxels of a tile to those of their bonds. */
+IN_LOOP void unload(const struct body *body, int64_t base, struct range range,
+                    const struct frames *restrict frames, struct loads *restrict loads)
+{
+    FOR_LANES(i, range)
+    {
+        const struct matrix m = frame_at(frames, i);
+        const struct vec own = turn(&m, (struct vec){loads->own_moment[0][i], loads->own_moment[1][i],
+                                                     loads->own_moment[2][i]});
+        loads->moment[0][i] = -(own.x + loads->moment[0][i]);
+        loads->moment[1][i] = -(own.y + loads->moment[1][i]);
+        loads->moment[2][i] = -(own.z + loads->moment[2][i]);
+    }
+    const struct bonds *bonds = body->bonds;
+    const struct vecs x = from_slot(bonds[AXIS_X].pull, base - bonds[AXIS_X].step),
+                      y = from_slot(bonds[AXIS_Y].pull, base - bonds[AXIS_Y].step),
+                      z = from_slot(bonds[AXIS_Z].pull, base - bonds[AXIS_Z].step);
+    const struct vecs force = from_slot(body->voxels.force, base);
+    collect(force.x, loads->force[0], x.x, y.x, z.x);
+    collect(force.y, loads->force[1], x.y, y.y, z.y);
+    collect(force.z, loads->force[2], x.z, y.z, z.z);
+    const struct vecs a = from_slot(bonds[AXIS_X].wrench, base - bonds[AXIS_X].step),
+                      b = from_slot(bonds[AXIS_Y].wrench, base - bonds[AXIS_Y].step),
+                      c = from_slot(bonds[AXIS_Z].wrench, base - bonds[AXIS_Z].step);
+    const struct vecs torque = from_slot(body->voxels.torque, base);
+    collect(torque.x, loads->moment[0], a.x, b.x, c.x);
+    collect(torque.y, loads->moment[1], a.y, b.y, c.y);
+    collect(torque.z, loads->moment[2], a.z, b.z, c.z);
 }
 
 /* Process all axes of a tile while its voxels are in the cache; whether there is one coupling is a
  * constant. */
 IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupling,
-                           double per_second)
+                           const struct span *span)
 {
-    const struct vox_settings *s = &body->model->settings;
-    const double most = s->largest_strain * s->voxel_size;
     struct frames frames;
     struct loads loads;
     bool fine = true;
     for (int64_t base = 0; base < body->n_slots; base += TILE) {
-        if (!body->tile_used[base / TILE]) continue;
-        find_frames(&body->voxels, base, &frames);
-        memset(&loads, 0, sizeof loads.force_lower + sizeof loads.moment_lower);
-        fine &= bonds_of_tile(body, coupling, AXIS_X, base, per_second, most, &frames, &loads);
-        fine &= bonds_of_tile(body, coupling, AXIS_Y, base, per_second, most, &frames, &loads);
-        fine &= bonds_of_tile(body, coupling, AXIS_Z, base, per_second, most, &frames, &loads);
-        unload(&body->voxels, base, loads.force_lower, loads.moment_lower, false);
+        const struct range x = range_of(body->bonds[AXIS_X].group_depth, base, span->limit),
+                           y = range_of(body->bonds[AXIS_Y].group_depth, base, span->limit),
+                           z = range_of(body->bonds[AXIS_Z].group_depth, base, span->limit),
+                           voxels = range_of(body->group_depth, base, span->limit);
+        const struct range all = both(both(x, y), both(z, voxels));
+        if (all.first == all.last) continue;
+        find_frames(&body->voxels, base, all, &frames);
+        memset(&loads, 0, sizeof loads);
+        fine &= bonds_of_tile(body, coupling, AXIS_X, base, x, span, &frames, &loads);
+        fine &= bonds_of_tile(body, coupling, AXIS_Y, base, y, span, &frames, &loads);
+        fine &= bonds_of_tile(body, coupling, AXIS_Z, base, z, span, &frames, &loads);
+        unload(body, base, voxels, &frames, &loads);
     }
     return fine;
 }
 
-static bool VECTOR(bonds_apply)(struct body *body, double per_second)
+static bool VECTOR(bonds_apply)(struct body *body, double per_second, double limit)
 {
-    if (!body->coupling) return bonds_of_body(body, NULL, per_second);
+    const struct vox_settings *s = &body->model->settings;
+    const struct span span = {per_second, limit, s->largest_strain * s->voxel_size};
+    if (!body->coupling) return bonds_of_body(body, NULL, &span);
     const struct coupling coupling = *body->coupling;
-    return bonds_of_body(body, &coupling, per_second);
+    return bonds_of_body(body, &coupling, &span);
 }

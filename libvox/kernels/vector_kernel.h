@@ -22,7 +22,50 @@
 /* One number per slot of a tile. */
 typedef double lanes[TILE];
 
+/* Lanes of a tile, in whole groups. */
+struct range {
+    int64_t first, last; /* excluding `last`; both are equal if there are none */
+};
+
+/* A loop over the groups of a range, and over the lanes of a group, which are computed together. */
+#define FOR_LANES(i, range)                                               \
+    for (int64_t group = (range).first; group < (range).last; group += GROUP) \
+    NO_LANE_DEPENDS_ON_ANOTHER                                            \
+    for (int64_t i = group; i < group + GROUP; i++)
+
+/* Return the range of the groups of a tile up to a depth. */
+IN_LOOP struct range range_of(const double *group_depth, int64_t base, double limit)
+{
+    struct range range = {TILE, 0};
+    for (int64_t i = 0; i < TILE; i += GROUP) {
+        if (group_depth[(base + i) / GROUP] > limit) continue;
+        if (i < range.first) range.first = i;
+        range.last = i + GROUP;
+    }
+    return range.last == 0 ? (struct range){0, 0} : range;
+}
+
+/* Numbers of events in the lanes of a group; a sum over lanes within a loop would be slow. */
+typedef int64_t counts[GROUP];
+
+IN_LOOP int64_t sum_of(const counts counts)
+{
+    int64_t sum = 0;
+    for (int i = 0; i < GROUP; i++) sum += counts[i];
+    return sum;
+}
+
+/* Return the smallest range that contains two others. */
+IN_LOOP struct range both(struct range one, struct range other)
+{
+    if (one.first == one.last) return other;
+    if (other.first == other.last) return one;
+    return (struct range){one.first < other.first ? one.first : other.first,
+                          one.last > other.last ? one.last : other.last};
+}
+
 #include "vector_bonds.h"
 #include "vector_motion.h"
 
-#define VECTOR_KERNEL(name, usable) {name, usable, VECTOR(bonds_apply), VECTOR(voxels_advance)}
+#define VECTOR_KERNEL(name, usable) {name, usable, VECTOR(bonds_apply), VECTOR(voxels_advance), \
+                                    VECTOR(sizes_advance)}

@@ -6,25 +6,26 @@ struct extremes {
     lanes speed2, way2;
 } IN_LINES;
 
-/* Move the free voxels of a tile; return the number of diverged ones. The constant `complete` means
- * that the forces include slow damping and weight. */
-IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, double too_far,
-                          bool complete, struct extremes *restrict extremes)
+/* Move the free voxels of a tile up to a depth; return the number of diverged ones. The constant
+ * `complete` means that the forces include slow damping and weight. */
+IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, struct range range, double dt,
+                          double too_far, double limit, bool complete,
+                          struct extremes *restrict extremes)
 {
     double *restrict px = v->position.x + base, *restrict py = v->position.y + base,
                      *restrict pz = v->position.z + base;
     double *restrict mx = v->momentum.x + base, *restrict my = v->momentum.y + base,
                      *restrict mz = v->momentum.z + base;
-    double *restrict fx = v->force.x + base, *restrict fy = v->force.y + base,
-                     *restrict fz = v->force.z + base;
+    const double *restrict fx = v->force.x + base, *restrict fy = v->force.y + base,
+                           *restrict fz = v->force.z + base;
     const double *restrict sx = v->start.x + base, *restrict sy = v->start.y + base,
                            *restrict sz = v->start.z + base;
-    const double *restrict mobility = v->mobility + base, *restrict mobile = v->mobile + base;
+    const double *restrict mobility = v->mobility + base, *restrict depth = v->depth + base;
     const double *restrict drag_rate = v->drag_rate + base, *restrict weight = v->weight + base;
-    int64_t lost = 0;
-    NO_LANE_DEPENDS_ON_ANOTHER
-    for (int64_t i = 0; i < TILE; i++) {
-        const bool moves = mobile[i] != 0.0;
+    counts lost = {0};
+    FOR_LANES(i, range)
+    {
+        const bool moves = depth[i] <= limit;
         const struct vec last = {mx[i], my[i], mz[i]}, bare = {fx[i], fy[i], fz[i]};
         const struct vec force = complete ? bare : loaded(bare, drag_rate[i], last, weight[i]);
         const struct vec momentum = {last.x + dt * force.x, last.y + dt * force.y,
@@ -35,7 +36,7 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
         const struct vec way = {position.x - sx[i], position.y - sy[i], position.z - sz[i]};
         const double speed2 = choose(moves, vec_dot(velocity, velocity), 0.0);
         const double way2 = choose(moves, vec_dot(way, way), 0.0);
-        lost += moves & !(way2 <= too_far * too_far);
+        lost[i - group] += moves & !(way2 <= too_far * too_far);
         extremes->speed2[i] = choose(speed2 > extremes->speed2[i], speed2, extremes->speed2[i]);
         extremes->way2[i] = choose(way2 > extremes->way2[i], way2, extremes->way2[i]);
         mx[i] = choose(moves, momentum.x, mx[i]);
@@ -44,37 +45,37 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, double dt, doubl
         px[i] = choose(moves, position.x, px[i]);
         py[i] = choose(moves, position.y, py[i]);
         pz[i] = choose(moves, position.z, pz[i]);
-        fx[i] = fy[i] = fz[i] = 0.0;
     }
-    return lost;
+    return sum_of(lost);
 }
 
 /* Add slow damping, weight and the floor to the forces on the free voxels of a tile. */
-static void stand_tile(struct body *body, int64_t base)
+static void stand_tile(struct body *body, int64_t base, double limit)
 {
     for (int64_t slot = base; slot < base + TILE; slot++) {
-        if (body->voxels.mobile[slot] == 0.0) continue;
+        if (body->voxels.depth[slot] > limit) continue;
         vox_voxel_load(body, slot);
         vox_floor_apply(body, slot);
     }
 }
 
-/* Turn the free voxels of a tile; return the number of diverged ones. */
-static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
+/* Turn the free voxels of a tile up to a depth; return the number of diverged ones. */
+static int64_t turn_tile(const struct voxels *v, int64_t base, struct range range, double dt,
+                         double limit)
 {
     double *restrict qw = v->orientation.w + base, *restrict qx = v->orientation.x + base;
     double *restrict qy = v->orientation.y + base, *restrict qz = v->orientation.z + base;
     double *restrict sx = v->spin.x + base, *restrict sy = v->spin.y + base,
                      *restrict sz = v->spin.z + base;
-    double *restrict tx = v->torque.x + base, *restrict ty = v->torque.y + base,
-                     *restrict tz = v->torque.z + base;
+    const double *restrict tx = v->torque.x + base, *restrict ty = v->torque.y + base,
+                           *restrict tz = v->torque.z + base;
     const double *restrict kept = v->spin_kept + base;
     const double *restrict turnability = v->turnability + base;
-    const double *restrict mobile = v->mobile + base;
-    int64_t lost = 0;
-    NO_LANE_DEPENDS_ON_ANOTHER
-    for (int64_t i = 0; i < TILE; i++) {
-        const bool moves = mobile[i] != 0.0;
+    const double *restrict depth = v->depth + base;
+    counts lost = {0};
+    FOR_LANES(i, range)
+    {
+        const bool moves = depth[i] <= limit;
         const struct vec spin = {kept[i] * (sx[i] + dt * tx[i]), kept[i] * (sy[i] + dt * ty[i]),
                                  kept[i] * (sz[i] + dt * tz[i])};
         const struct vec rate = vec_scale(turnability[i], spin);
@@ -83,9 +84,9 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
         const double half = 0.5 * dt;
         const struct quat r = {q.w + half * dq.w, q.x + half * dq.x, q.y + half * dq.y,
                                q.z + half * dq.z};
-        const double norm = 1.0 / sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
+        const double norm = 1.0 / sqrt(r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w);
         const bool straight = r.w * norm >= 1.0;
-        lost += moves & !(vec_dot(spin, spin) * turnability[i] <= DBL_MAX);
+        lost[i - group] += moves & !(vec_dot(spin, spin) * turnability[i] <= DBL_MAX);
         sx[i] = choose(moves, spin.x, sx[i]);
         sy[i] = choose(moves, spin.y, sy[i]);
         sz[i] = choose(moves, spin.z, sz[i]);
@@ -93,9 +94,8 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, double dt)
         qx[i] = choose(moves, choose(straight, 0.0, r.x * norm), q.x);
         qy[i] = choose(moves, choose(straight, 0.0, r.y * norm), q.y);
         qz[i] = choose(moves, choose(straight, 0.0, r.z * norm), q.z);
-        tx[i] = ty[i] = tz[i] = 0.0;
     }
-    return lost;
+    return sum_of(lost);
 }
 
 /* Update the sizes of a tile's voxels as in motion.c; `swing` and `sway` are the sine and cosine of
@@ -123,21 +123,25 @@ static void size_tile(const struct voxels *v, int64_t base, const struct actuati
 }
 
 /* Advance partly clamped voxels one by one. */
-static bool advance_partly_held(struct body *body)
+static bool advance_partly_held(struct body *body, double limit)
 {
     bool fine = true;
-    for (int64_t i = 0; i < body->n_partly; i++) fine &= vox_voxel_advance(body, body->partly[i]);
+    for (int64_t i = 0; i < body->n_partly; i++)
+        if (body->depth[body->partly[i]] <= limit)
+            fine &= vox_voxel_advance(body, body->partly[i]);
     return fine;
 }
 
-IN_LOOP int64_t advance_tile(struct body *body, int64_t base, struct extremes *extremes)
+IN_LOOP int64_t advance_tile(struct body *body, int64_t base, struct range range, double limit,
+                             struct extremes *extremes)
 {
     const struct voxels *v = &body->voxels;
     const double dt = body->census.dt, too_far = body->model->too_far;
-    if (!body->model->settings.floor)
-        return move_tile(v, base, dt, too_far, false, extremes) + turn_tile(v, base, dt);
-    stand_tile(body, base);
-    return move_tile(v, base, dt, too_far, true, extremes) + turn_tile(v, base, dt);
+    const bool stands = body->model->settings.floor;
+    if (stands) stand_tile(body, base, limit);
+    return (stands ? move_tile(v, base, range, dt, too_far, limit, true, extremes)
+                   : move_tile(v, base, range, dt, too_far, limit, false, extremes)) +
+           turn_tile(v, base, range, dt, limit);
 }
 
 /* Return the larger of a number and the roots of some squares. */
@@ -148,21 +152,29 @@ static double raised(double number, const double *squares)
     return sqrt(largest) > number ? sqrt(largest) : number;
 }
 
-static bool VECTOR(voxels_advance)(struct body *body)
+static bool VECTOR(voxels_advance)(struct body *body, double limit)
 {
-    const struct actuation actuation = vox_actuation_at(body->model, body->time);
-    const double swing = sine(TWO_PI * actuation.cycles), sway = cosine(TWO_PI * actuation.cycles);
     struct extremes extremes = {{0.0}, {0.0}};
     int64_t lost = 0;
     body->top_speed = 0.0;
-    const bool fine = advance_partly_held(body);
+    const bool fine = advance_partly_held(body, limit);
     for (int64_t tile = 0; tile < body->n_tiles; tile++) {
-        if (!body->tile_used[tile]) continue;
-        lost += advance_tile(body, tile * TILE, &extremes);
-        size_tile(&body->voxels, tile * TILE, &actuation, swing, sway);
+        const struct range range = range_of(body->group_depth, tile * TILE, limit);
+        if (range.first == range.last) continue;
+        lost += advance_tile(body, tile * TILE, range, limit, &extremes);
     }
     body->top_speed = raised(body->top_speed, extremes.speed2);
     body->farthest = raised(body->farthest, extremes.way2);
-    body->time += body->census.dt;
     return fine && lost == 0;
+}
+
+static void VECTOR(sizes_advance)(struct body *body, double limit)
+{
+    const struct actuation actuation = vox_actuation_at(body->model, body->time);
+    const double swing = sine(TWO_PI * actuation.cycles), sway = cosine(TWO_PI * actuation.cycles);
+    for (int64_t tile = 0; tile < body->n_tiles; tile++) {
+        const struct range range = range_of(body->group_depth, tile * TILE, limit);
+        if (range.first == range.last) continue;
+        size_tile(&body->voxels, tile * TILE, &actuation, swing, sway);
+    }
 }

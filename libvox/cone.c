@@ -1,0 +1,160 @@
+/* The cone of influence: the voxels and bonds whose motion can reach a sample in time. In one step, an
+ * effect spreads along bonds and contacts by one voxel (docs/solver.md). */
+#include <string.h>
+
+#include "internal.h"
+
+/* Steps across a pair of voxels that is near, but not listed: one more for each of these gaps
+ * between them, in edges, which no voxel crosses in one step. Beyond LONGEST_PAIR, bonds lead across
+ * the surface of a body without gaps. */
+static const double GAP = 0.15;
+
+/* ---- depths ---------------------------------------------------------------------------------- */
+
+/* Voxels whose depth has become lower, in a ring with one place for each slot. */
+struct ring {
+    int32_t *slots;
+    uint8_t *queued; /* [slots] */
+    int64_t size, begin, n;
+};
+
+static void lower_to(const struct body *body, struct ring *ring, int64_t slot, int32_t depth)
+{
+    if (body->depth[slot] <= depth) return;
+    body->depth[slot] = depth;
+    if (ring->queued[slot]) return;
+    ring->queued[slot] = 1;
+    ring->slots[(ring->begin + ring->n++) % ring->size] = (int32_t)slot;
+}
+
+/* Spread depths along bonds; a voxel that cannot move passes nothing on. */
+static void spread(const struct body *body, struct ring *ring)
+{
+    while (ring->n > 0) {
+        const int64_t slot = ring->slots[ring->begin];
+        ring->begin = (ring->begin + 1) % ring->size;
+        ring->n--;
+        ring->queued[slot] = 0;
+        if (body->voxels.fixed[slot] == VOX_FIX_ALL) continue;
+        for (int side = 0; side < 6; side++) {
+            if (!(body->bonded[slot] >> side & 1)) continue;
+            const int64_t step = body->step[side / 2];
+            lower_to(body, ring, side % 2 ? slot + step : slot - step, body->depth[slot] + 1);
+        }
+    }
+}
+
+/* Spread depths across pairs; return whether one became lower. */
+static bool spread_across(const struct body *body, struct ring *ring, struct pair pair,
+                          int32_t steps)
+{
+    const uint8_t *fixed = body->voxels.fixed;
+    const int32_t first = body->depth[pair.first], second = body->depth[pair.second];
+    if (first < second - steps && fixed[pair.first] != VOX_FIX_ALL)
+        lower_to(body, ring, pair.second, first + steps);
+    else if (second < first - steps && fixed[pair.second] != VOX_FIX_ALL)
+        lower_to(body, ring, pair.first, second + steps);
+    return ring->n > 0;
+}
+
+static int32_t steps_across(const struct body *body, struct pair pair)
+{
+    const vox_model *model = body->model;
+    const double touching = model->settings.collision_envelope * model->largest_size /
+                            model->settings.voxel_size;
+    const double gap = sqrt((double)start_distance2(body, pair)) - touching;
+    return gap < GAP ? 1 : gap < (LONGEST_PAIR - 1) * GAP ? 1 + (int32_t)(gap / GAP) : LONGEST_PAIR;
+}
+
+static bool spread_across_pairs(const struct body *body, struct ring *ring)
+{
+    const struct contacts *contacts = &body->contacts;
+    bool changed = false;
+    for (int64_t i = 0; i < contacts->first.n; i++)
+        changed |= spread_across(body, ring, contacts->first.list[i], 1);
+    for (int64_t i = 0; i < contacts->near_by.pairs.n; i++) {
+        const struct pair pair = contacts->near_by.pairs.list[i];
+        changed |= spread_across(body, ring, pair, steps_across(body, pair));
+    }
+    return changed;
+}
+
+/* ---- sources --------------------------------------------------------------------------------- */
+
+static bool is_source(const struct body *body, int64_t slot, enum sources sources)
+{
+    const vox_model *model = body->model;
+    const int64_t falling = model->settings.falling_code;
+    if (sources & SOURCE_ALL) return true;
+    if (falling != 0 && model->of_code[falling] == body->voxels.substance[slot]) return true;
+    if ((sources & SOURCE_TIP) && slot == body->slots[body->census.n_voxels - 1]) return true;
+    return (sources & SOURCE_FACE) && body->coordinates[slot][0] == body->census.length[0] - 1;
+}
+
+static void find_depths(struct body *body, enum sources sources)
+{
+    struct ring ring = {.slots = body->ring, .queued = body->queued, .size = body->n_slots};
+    for (int64_t i = 0; i < body->census.n_voxels; i++) body->depth[body->slots[i]] = UNREACHED;
+    for (int64_t i = 0; i < body->census.n_voxels; i++)
+        if (is_source(body, body->slots[i], sources)) lower_to(body, &ring, body->slots[i], 0);
+    spread(body, &ring);
+    if (!body->model->settings.self_collision) return;
+    while (spread_across_pairs(body, &ring)) spread(body, &ring);
+}
+
+/* ---- depths for the kernels ------------------------------------------------------------------ */
+
+static void lower(double *number, double other)
+{
+    if (other < *number) *number = other;
+}
+
+static int64_t groups_of(const struct body *body)
+{
+    return body->n_tiles * (TILE / GROUP);
+}
+
+static void place_depths_of_voxels(struct body *body)
+{
+    for (int64_t group = 0; group < groups_of(body); group++) body->group_depth[group] = ABSENT;
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        if (body->voxels.fixed[slot] == 0) body->voxels.depth[slot] = body->depth[slot];
+        lower(&body->group_depth[slot / GROUP], body->depth[slot]);
+    }
+}
+
+/* A bond acts on both ends; one that cannot move needs no forces. */
+static void place_depths_of_bonds(struct body *body, struct bonds *bonds)
+{
+    const uint8_t *fixed = body->voxels.fixed;
+    for (int64_t group = 0; group < groups_of(body); group++) bonds->group_depth[group] = ABSENT;
+    for (int64_t i = 0; i < bonds->n; i++) {
+        const int64_t slot = bonds->lower[i], ends[] = {slot, slot + bonds->step};
+        bonds->depth[slot] = UNREACHED;
+        for (int end = 0; end < 2; end++)
+            if (fixed[ends[end]] != VOX_FIX_ALL) lower(&bonds->depth[slot], body->depth[ends[end]]);
+        lower(&bonds->group_depth[slot / GROUP], bonds->depth[slot]);
+    }
+}
+
+void vox_cone_shape(struct body *body, enum sources sources)
+{
+    find_depths(body, sources);
+    place_depths_of_voxels(body);
+    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++)
+        place_depths_of_bonds(body, &body->bonds[axis]);
+    body->sources = sources;
+    body->first.limit = -1.0;
+}
+
+double vox_cone_share(const struct body *body, int64_t steps)
+{
+    double left = 0.0, all = 0.0;
+    for (int64_t group = 0; group < groups_of(body); group++) {
+        if (body->group_depth[group] == ABSENT) continue;
+        left += fmax(0.0, (double)steps - body->group_depth[group]);
+        all += (double)steps;
+    }
+    return all > 0.0 ? left / all : 1.0;
+}
