@@ -100,15 +100,6 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
 
 /* ---- slots ----------------------------------------------------------------------------------- */
 
-int64_t vox_slots_in_all(const struct body *body)
-{
-    int64_t farthest = 1;
-    for (int axis = 0; axis < 3; axis++)
-        if (body->census.length[axis] > 1 && body->step[axis] > farthest)
-            farthest = body->step[axis];
-    return body->n_tiles * TILE + farthest;
-}
-
 static int64_t slot_of(const struct body *body, const struct cursor *cursor)
 {
     int64_t slot = 0;
@@ -163,7 +154,7 @@ static struct vecs take_vecs(struct arena *arena, int64_t n)
 /* Lay out the arrays that are 0 at first. */
 static void lay_out_cleared(struct body *body, struct arena *arena)
 {
-    const int64_t n = vox_slots_in_all(body), n_groups = body->n_tiles * (TILE / GROUP);
+    const int64_t n = body->n_padded, n_groups = body->n_tiles * (TILE / GROUP);
     struct voxels *v = &body->voxels;
     v->force = take_vecs(arena, n);
     v->torque = take_vecs(arena, n);
@@ -193,7 +184,7 @@ static void lay_out_cleared(struct body *body, struct arena *arena)
 
 static void lay_out_others(struct body *body, struct arena *arena)
 {
-    const int64_t n = vox_slots_in_all(body);
+    const int64_t n = body->n_padded;
     struct voxels *v = &body->voxels;
     v->position = take_vecs(arena, n);
     double *w = take_numbers(arena, n);
@@ -273,7 +264,7 @@ static void place_starts(struct body *body)
     const enum axis *order = body->model->order;
     const int64_t *from = body->census.from, *length = body->census.length;
     int64_t at[3] = {0, 0, 0};
-    for (int64_t slot = 0; slot < vox_slots_in_all(body); slot++) {
+    for (int64_t slot = 0; slot < body->n_padded; slot++) {
         for (int axis = 0; axis < 3; axis++) body->coordinates[slot][axis] = (int32_t)at[axis];
         vec_put(body->voxels.start, slot,
                 (struct vec){edge * ((double)(from[0] + at[0]) + 0.5),
@@ -290,7 +281,7 @@ static void place_starts(struct body *body)
 /* No voxel and no bond is there; both get their depths later. */
 static void place_nothing(struct body *body)
 {
-    for (int64_t slot = 0; slot < vox_slots_in_all(body); slot++) {
+    for (int64_t slot = 0; slot < body->n_padded; slot++) {
         body->voxels.depth[slot] = ABSENT;
         for (int axis = 0; axis < 3; axis++) body->bonds[axis].depth[slot] = ABSENT;
     }
@@ -355,13 +346,16 @@ static const struct coupling *only_coupling(const vox_model *model)
 
 static void set_box(struct body *body)
 {
+    int64_t farthest = 1;
     body->n_slots = 1;
     for (int i = 0; i < 3; i++) {
         const enum axis axis = body->model->order[i];
         body->step[axis] = body->bonds[axis].step = body->n_slots;
         body->n_slots *= body->census.length[axis];
+        if (body->census.length[axis] > 1) farthest = body->step[axis];
     }
     body->n_tiles = (body->n_slots + TILE - 1) / TILE;
+    body->n_padded = body->n_tiles * TILE + farthest;
 }
 
 enum vox_status vox_body_shape(struct body *body, const vox_model *model,

@@ -280,6 +280,7 @@ struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
+    int64_t n_padded; /* slots with the padding after the box, which may contain upper ends of a tile */
     int32_t (*coordinates)[3]; /* of each slot in the box */
     int64_t step[3];           /* slots between neighboring cells along each axis */
     int32_t *slots;            /* [n_voxels] slots of the voxels, in the order of cells */
@@ -380,9 +381,6 @@ enum vox_status vox_body_census(const vox_model *model, const uint8_t *material,
 /* Build a body from materials; memory that is large enough is reused. */
 enum vox_status vox_body_shape(struct body *body, const vox_model *model,
                                const struct census *census, const uint8_t *material);
-/* Number of slots including the padding after the box, which may contain upper ends of a tile. */
-int64_t vox_slots_in_all(const struct body *body);
-
 /* state.c */
 
 /* Reset the body to rest at time 0. */

@@ -65,25 +65,26 @@ static void rest(const struct body *body, double *numbers)
 {
     const double *start = start_of(body, numbers);
     if (start)
-        copy(numbers, start, vox_slots_in_all(body));
+        copy(numbers, start, body->n_padded);
     else
-        fill(numbers, vox_slots_in_all(body), rest_of(body, numbers));
+        fill(numbers, body->n_padded, rest_of(body, numbers));
 }
 
 static bool rests(const struct body *body, const double *numbers)
 {
     const double *start = start_of(body, numbers), value = rest_of(body, numbers);
+    const int64_t n = body->n_padded;
+    if (start) return memcmp(numbers, start, (size_t)n * sizeof *numbers) == 0;
     int64_t moved = 0;
-    for (int64_t i = 0; i < vox_slots_in_all(body); i++)
-        moved += numbers[i] != (start ? start[i] : value);
+    for (int64_t i = 0; i < n; i++) moved += numbers[i] != value;
     return moved == 0;
 }
 
 static void rest_others(struct body *body)
 {
-    clear(body->voxels.force, vox_slots_in_all(body));
-    clear(body->voxels.torque, vox_slots_in_all(body));
-    fill(body->voxels.size, vox_slots_in_all(body), body->model->settings.voxel_size);
+    clear(body->voxels.force, body->n_padded);
+    clear(body->voxels.torque, body->n_padded);
+    fill(body->voxels.size, body->n_padded, body->model->settings.voxel_size);
     body->time = body->top_speed = body->farthest = 0.0;
 }
 
@@ -115,7 +116,7 @@ void vox_first_keep(struct body *body, double limit)
     first->farthest = body->farthest;
     for (int i = 0; i < N_STATE; i++) {
         first->moved[i] = !rests(body, state.numbers[i]);
-        if (first->moved[i]) copy(first->numbers[i], state.numbers[i], vox_slots_in_all(body));
+        if (first->moved[i]) copy(first->numbers[i], state.numbers[i], body->n_padded);
     }
 }
 
@@ -125,7 +126,7 @@ void vox_first_make(struct body *body, double limit)
     const struct first *first = &body->first;
     for (int i = 0; i < N_STATE; i++) {
         if (first->moved[i])
-            copy(state.numbers[i], first->numbers[i], vox_slots_in_all(body));
+            copy(state.numbers[i], first->numbers[i], body->n_padded);
         else
             rest(body, state.numbers[i]);
     }
