@@ -158,9 +158,9 @@ static void lay_out_cleared(struct body *body, struct arena *arena)
     struct voxels *v = &body->voxels;
     v->force = take_vecs(arena, n);
     v->torque = take_vecs(arena, n);
-    double **const constants[] = {&v->phase,    &v->phase_sine, &v->phase_cosine,
-                                  &v->amplitude, &v->mobility,   &v->drag_rate,
-                                  &v->weight,   &v->turnability, &v->spin_kept};
+    double **const constants[] = {&v->phase,     &v->phase_sine,  &v->phase_cosine,
+                                  &v->amplitude, &v->mobility,    &v->drag_rate,
+                                  &v->weight,    &v->turnability, &v->spin_kept};
     for (size_t i = 0; i < sizeof constants / sizeof *constants; i++)
         *constants[i] = take_numbers(arena, n);
     v->substance = take(arena, n, sizeof *v->substance);
@@ -210,7 +210,7 @@ static void lay_out_others(struct body *body, struct arena *arena)
     body->cells = take(arena, body->census.n_voxels, sizeof *body->cells);
     body->partly = take(arena, body->census.n_voxels, sizeof *body->partly);
     body->coordinates = take(arena, n, sizeof *body->coordinates);
-    body->slot_of = take(arena, body->n_slots, sizeof *body->slot_of);
+    body->slot_of = take(arena, body->n_box_cells, sizeof *body->slot_of);
     body->ring = take(arena, body->n_slots, sizeof *body->ring);
 }
 
@@ -354,6 +354,11 @@ static void set_box(struct body *body)
         body->n_slots *= body->census.length[axis];
         if (body->census.length[axis] > 1) farthest = body->step[axis];
     }
+    const int64_t *length = body->census.length, reach = body->model->vicinity.reach;
+    body->row[0] = 1;
+    body->row[1] = length[0] + reach;
+    body->row[2] = body->row[1] * (length[1] + reach);
+    body->n_box_cells = body->row[2] * length[2];
     body->n_tiles = (body->n_slots + TILE - 1) / TILE;
     body->n_padded = body->n_tiles * TILE + farthest;
 }

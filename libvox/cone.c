@@ -1,13 +1,27 @@
-/* The cone of influence: the voxels and bonds whose motion can reach a sample in time. In one step, an
- * effect spreads along bonds and contacts by one voxel (docs/solver.md). */
-#include <string.h>
+/* The cone of influence: the voxels and bonds whose motion can reach a sample in time. In one step,
+ * an effect spreads along bonds and contacts by one voxel (docs/solver.md). */
+#include <stdlib.h>
 
 #include "internal.h"
 
 /* Steps across a pair of voxels that is near, but not listed: one more for each of these gaps
- * between them, in edges, which no voxel crosses in one step. Beyond LONGEST_PAIR, bonds lead across
- * the surface of a body without gaps. */
+ * between them, in edges, which no voxel crosses in a step. */
 static const double GAP = 0.15;
+
+enum vox_status vox_cone_prepare(vox_model *model)
+{
+    const struct vox_settings *s = &model->settings;
+    const double touching = s->collision_envelope * model->largest_size / s->voxel_size;
+    const int64_t radius = model->vicinity.reach + 1;
+    model->largest2 = radius * radius;
+    model->steps_across = malloc((size_t)model->largest2 + 1);
+    if (!model->steps_across) return VOX_NO_MEMORY;
+    for (int64_t distance2 = 0; distance2 <= model->largest2; distance2++) {
+        const double gap = sqrt((double)distance2) - touching, steps = 1.0 + fmax(0.0, gap / GAP);
+        model->steps_across[distance2] = (uint8_t)fmin(steps, LONGEST_PAIR);
+    }
+    return VOX_OK;
+}
 
 /* ---- depths ---------------------------------------------------------------------------------- */
 
@@ -57,15 +71,6 @@ static bool spread_across(const struct body *body, struct ring *ring, struct pai
     return ring->n > 0;
 }
 
-static int32_t steps_across(const struct body *body, struct pair pair)
-{
-    const vox_model *model = body->model;
-    const double touching = model->settings.collision_envelope * model->largest_size /
-                            model->settings.voxel_size;
-    const double gap = sqrt((double)start_distance2(body, pair)) - touching;
-    return gap < GAP ? 1 : gap < (LONGEST_PAIR - 1) * GAP ? 1 + (int32_t)(gap / GAP) : LONGEST_PAIR;
-}
-
 static bool spread_across_pairs(const struct body *body, struct ring *ring)
 {
     const struct contacts *contacts = &body->contacts;
@@ -74,7 +79,8 @@ static bool spread_across_pairs(const struct body *body, struct ring *ring)
         changed |= spread_across(body, ring, contacts->first.list[i], 1);
     for (int64_t i = 0; i < contacts->near_by.pairs.n; i++) {
         const struct pair pair = contacts->near_by.pairs.list[i];
-        changed |= spread_across(body, ring, pair, steps_across(body, pair));
+        const uint8_t steps = body->model->steps_across[contacts->near_by.distance2[i]];
+        changed |= spread_across(body, ring, pair, steps);
     }
     return changed;
 }

@@ -110,9 +110,10 @@ struct kernel;
 #define MOST_SPARES 8
 
 struct spares {
-    atomic_flag busy;                 /* a thread uses this struct */
+    atomic_flag busy; /* a thread uses this struct */
     int64_t n;
-    struct body *bodies[MOST_SPARES]; /* the one that has not been used for the longest time first */
+    struct body
+        *bodies[MOST_SPARES]; /* the one that has not been used for the longest time first */
 };
 
 struct vox_model {
@@ -134,6 +135,9 @@ struct vox_model {
     struct substance *substances;
     struct coupling *couplings; /* [n_substances][n_substances] */
     uint8_t *fixed;             /* [cells] */
+    int64_t largest2;           /* square of the largest distance of a near pair, edges */
+    uint8_t *steps_across;      /* [largest2 + 1] difference of the depths of a near pair, by the
+                                   square of its distance */
 };
 
 /* ---- one body -------------------------------------------------------------------------------- */
@@ -149,8 +153,8 @@ struct census {
 
 /* Arrays over the slots of a body: the cells of its box in the order of the model, followed by
  * padding slots, which are treated as empty cells. Empty slots contain finite numbers without
- * effect on results. No result depends on the order: voxels, bonds and contacts are summed up in the
- * order of cells, x fastest, then y, then z. */
+ * effect on results. No result depends on the order: voxels, bonds and contacts are summed up in
+ * the order of cells, x fastest, then y, then z. */
 struct vecs {
     double *x, *y, *z;
 };
@@ -231,9 +235,9 @@ struct bonds {
     double *lower_y, *lower_z;       /* rad, turn of the lower end */
     struct vecs upper;               /* rad, turn of the upper end */
     struct coupling_arrays coupling; /* of each bond, unless all are equal */
-    struct vecs pull, wrench;        /* N and N m, on the upper end, with the opposite sign; 0 without
-                                        a bond. Also before the first slot, by `step` slots. */
-    double *group_depth;             /* lowest of the bonds in a group of slots */
+    struct vecs pull, wrench; /* N and N m, on the upper end, with the opposite sign; 0 without
+                                 a bond. Also before the first slot, by `step` slots. */
+    double *group_depth;      /* lowest of the bonds in a group of slots */
 };
 
 /* `bonded` of a voxel with a bond on every side. */
@@ -280,22 +284,26 @@ struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
-    int64_t n_padded; /* slots with the padding after the box, which may contain upper ends of a tile */
+    int64_t
+        n_padded; /* slots with the padding after the box, which may contain upper ends of a tile */
     int32_t (*coordinates)[3]; /* of each slot in the box */
     int64_t step[3];           /* slots between neighboring cells along each axis */
     int32_t *slots;            /* [n_voxels] slots of the voxels, in the order of cells */
     int32_t *cells;            /* [n_voxels] cells of the voxels in the canvas, ascending */
-    int32_t *slot_of;          /* [cells of the box] */
-    uint8_t *occupied;         /* 1 if the slot has a voxel */
-    uint8_t *bonded;           /* bits of the sides with a bond: -x, +x, -y, +y, -z, +z */
+    /* Indices of the cells of the box, x fastest, with empty cells between the rows and layers, so
+     * that no near cell is in another row. */
+    int64_t n_box_cells, row[3];
+    int32_t *slot_of;  /* [n_box_cells] */
+    uint8_t *occupied; /* 1 if the slot has a voxel */
+    uint8_t *bonded;   /* bits of the sides with a bond: -x, +x, -y, +y, -z, +z */
     struct voxels voxels;
     struct bonds bonds[3];           /* along each axis */
     const struct coupling *coupling; /* of all bonds; NULL if they differ */
     int32_t *depth;                  /* [slots] of a voxel, also of one that is clamped */
     double *group_depth;             /* lowest of the voxels in a group of slots */
     enum sources sources;            /* of the depths */
-    int32_t *ring;                   /* [cells of the box] scratch */
-    uint8_t *queued;                 /* [cells of the box] scratch, 0 */
+    int32_t *ring;                   /* [slots] scratch */
+    uint8_t *queued;                 /* [slots] scratch, 0 */
     int64_t n_partly; /* number of voxels that are clamped in some degrees of freedom only */
     int32_t *partly;  /* their slots, in the order of cells */
     struct contacts contacts;
@@ -305,9 +313,9 @@ struct body {
     size_t memory_size;
     uint8_t *material; /* [cells of the canvas] from which the body was built */
     bool complete;     /* whether it was */
-    double time;      /* s */
-    double top_speed; /* m/s, after the previous step */
-    double farthest;  /* m, largest distance of a voxel from its start so far */
+    double time;       /* s */
+    double top_speed;  /* m/s, after the previous step */
+    double farthest;   /* m, largest distance of a voxel from its start so far */
 };
 
 static inline const struct substance *substance_of_voxel(const struct body *body, int64_t slot)
@@ -334,20 +342,7 @@ IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentu
 static inline int64_t box_cell(const struct body *body, int64_t slot)
 {
     const int32_t *at = body->coordinates[slot];
-    const int64_t *length = body->census.length;
-    return at[0] + length[0] * (at[1] + length[1] * at[2]);
-}
-
-/* Return the square of the distance of two voxels at rest, in edges. */
-static inline int64_t start_distance2(const struct body *body, struct pair pair)
-{
-    int64_t distance2 = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const int64_t by =
-            body->coordinates[pair.second][axis] - body->coordinates[pair.first][axis];
-        distance2 += by * by;
-    }
-    return distance2;
+    return at[0] + body->row[1] * at[1] + body->row[2] * at[2];
 }
 
 /* Return the neighbor of a slot along an axis, or -1 if it is outside the box. */
@@ -409,7 +404,6 @@ bool vox_body_has(const struct body *body, const uint8_t *material);
 
 /* Free all unused bodies. */
 void vox_bodies_destroy(vox_model *model);
-
 
 /* bond.c */
 
@@ -509,6 +503,9 @@ double vox_floor_depth(const struct body *body, int64_t slot);
 void vox_floor_apply(struct body *body, int64_t slot);
 
 /* cone.c */
+
+/* Set the steps across pairs of a model. */
+enum vox_status vox_cone_prepare(vox_model *model);
 
 /* Set the depths of voxels and bonds for samples of some points; the list of contacts must be that
  * at rest. */

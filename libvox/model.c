@@ -187,6 +187,7 @@ static enum vox_status fill(vox_model *model, const struct vox_material *palette
         &model->vicinity, hops,
         (vox_contacts_reach(model) / s->voxel_size + 2.0 * STRAYED) * (1.0 + 1e-12));
     if (built != VOX_OK) return built;
+    if (vox_cone_prepare(model) != VOX_OK) return VOX_NO_MEMORY;
     return fixed ? read_fixed(model, fixed, culprit) : VOX_OK;
 }
 
@@ -222,6 +223,7 @@ void vox_model_destroy(vox_model *model)
     free(model->substances);
     free(model->couplings);
     free(model->fixed);
+    free(model->steps_across);
     vox_vicinity_destroy(&model->vicinity);
     vox_bodies_destroy(model);
     free(model);

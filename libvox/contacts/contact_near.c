@@ -9,7 +9,7 @@
 
 static int64_t words_of(const struct body *body)
 {
-    return (body->n_slots + 63) / 64;
+    return (body->n_box_cells + 63) / 64;
 }
 
 static bool is_set(const uint64_t *bits, int64_t cell)
@@ -46,8 +46,7 @@ static int lowest(uint64_t word)
 /* Return the difference of the indices of two cells in the box. */
 static int64_t cells_by(const struct body *body, const int32_t by[3])
 {
-    const int64_t *length = body->census.length;
-    return by[0] + length[0] * (by[1] + length[1] * by[2]);
+    return by[0] + by[1] * body->row[1] + by[2] * body->row[2];
 }
 
 /* ---- voxels that are connected by a few bonds ------------------------------------------------ */
@@ -138,7 +137,7 @@ bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, s
 /* ---- the list -------------------------------------------------------------------------------- */
 
 /* Return which of 64 skin voxels have another one in a near cell without a shortest path of bonds.
- * An offset across the border of the box gives the cell with that index. */
+ * An offset across the border of the box leads to a cell between its rows, which is empty. */
 static uint64_t candidates(const struct body *body, const struct near_by *near_by,
                            const struct near_cell *cell, int64_t word)
 {
@@ -148,29 +147,28 @@ static uint64_t candidates(const struct body *body, const struct near_by *near_b
     return cell->place < 0 ? bits : bits & ~near_by->joined[cell->place * n_words + word];
 }
 
-static bool is_at(const struct body *body, struct pair pair, const int32_t by[3])
+static uint16_t distance2_of(const int32_t by[3])
 {
-    int32_t found[3];
-    set_offset(body, pair, found);
-    return found[0] == by[0] && found[1] == by[1] && found[2] == by[2];
+    return (uint16_t)(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
 }
 
-/* Count the pairs in near cells of each voxel in `begin`, and write them to `list` unless it is
- * NULL; `begin` is then the index of the next pair of a voxel. */
+/* Count the pairs in near cells of each voxel in `begin`; if they are to be written, `begin` is the
+ * index of the next pair of a voxel. */
 static void visit(const struct body *body, const struct near_by *near_by, int64_t *begin,
-                  struct pair *list)
+                  bool write)
 {
     const struct vicinity *vicinity = &body->model->vicinity;
     for (int64_t i = 0; i < vicinity->n_cells; i++) {
         const struct near_cell *cell = &vicinity->cells[i];
         const int64_t by = cells_by(body, cell->by);
+        const uint16_t distance2 = distance2_of(cell->by);
         for (int64_t word = 0; word < words_of(body); word++) {
             for (uint64_t left = candidates(body, near_by, cell, word); left; left &= left - 1) {
-                const int64_t first = 64 * word + lowest(left);
-                const struct pair pair = {body->slot_of[first], body->slot_of[first + by]};
-                if (!is_at(body, pair, cell->by)) continue;
-                if (list) list[begin[first]] = pair;
-                begin[first]++;
+                const int64_t first = 64 * word + lowest(left), at = begin[first]++;
+                if (!write) continue;
+                near_by->pairs.list[at] =
+                    (struct pair){body->slot_of[first], body->slot_of[first + by]};
+                near_by->distance2[at] = distance2;
             }
         }
     }
@@ -186,8 +184,9 @@ static void drop_joined(const struct body *body, struct near_by *near_by)
     for (int64_t i = 0; i < pairs->n; i++) {
         int32_t by[3];
         set_offset(body, pairs->list[i], by);
-        if (!is_joined_around(body, &near_by->search, pairs->list[i], by))
-            pairs->list[kept++] = pairs->list[i];
+        if (is_joined_around(body, &near_by->search, pairs->list[i], by)) continue;
+        near_by->distance2[kept] = near_by->distance2[i];
+        pairs->list[kept++] = pairs->list[i];
     }
     pairs->n = kept;
 }
@@ -220,20 +219,23 @@ static void free_bits(struct near_by *near_by)
     free(near_by->skin);
     free(near_by->held);
     free(near_by->begin);
+    free(near_by->distance2);
+    near_by->distance2 = NULL;
     free(near_by->search.reached);
     free(near_by->search.queue);
 }
 
 static bool allocate(const struct body *body, struct near_by *near_by)
 {
-    const size_t n_slots = (size_t)body->n_slots, n_places = (size_t)body->model->vicinity.n_places;
+    const size_t n_slots = (size_t)body->n_slots, n_cells = (size_t)body->n_box_cells;
+    const size_t n_places = (size_t)body->model->vicinity.n_places;
     const size_t size = (size_t)words_of(body) * sizeof(uint64_t);
     free_bits(near_by);
     near_by->joined = malloc(n_places * size);
     near_by->bonds = malloc(6 * size);
     near_by->skin = malloc(size);
     near_by->held = malloc(size);
-    near_by->begin = calloc(n_slots + 1, sizeof *near_by->begin);
+    near_by->begin = calloc(n_cells + 1, sizeof *near_by->begin);
     near_by->search.reached = calloc(n_slots, sizeof *near_by->search.reached);
     near_by->search.queue = malloc(n_slots * sizeof *near_by->search.queue);
     near_by->search.from = -1;
@@ -247,12 +249,14 @@ enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_
     if (!allocate(body, near_by)) return VOX_NO_MEMORY;
     join_all(body, near_by);
     mark_skin(body, near_by);
-    visit(body, near_by, near_by->begin + 1, NULL);
-    for (int64_t cell = 0; cell < body->n_slots; cell++)
+    visit(body, near_by, near_by->begin + 1, false);
+    for (int64_t cell = 0; cell < body->n_box_cells; cell++)
         near_by->begin[cell + 1] += near_by->begin[cell];
-    near_by->pairs.n = near_by->begin[body->n_slots];
+    near_by->pairs.n = near_by->begin[body->n_box_cells];
     if (!vox_pairs_reserve(&near_by->pairs, near_by->pairs.n)) return VOX_NO_MEMORY;
-    visit(body, near_by, near_by->begin, near_by->pairs.list);
+    near_by->distance2 = malloc(((size_t)near_by->pairs.n + 1) * sizeof *near_by->distance2);
+    if (!near_by->distance2) return VOX_NO_MEMORY;
+    visit(body, near_by, near_by->begin, true);
     drop_joined(body, near_by);
     return VOX_OK;
 }

@@ -47,10 +47,12 @@ static int32_t depth_of(const struct body *body, struct pair pair)
     return first < second ? first : second;
 }
 
-static int64_t group_of(const struct body *body, struct pair pair)
+/* Return the place in the order of a near pair. */
+static int64_t group_of(const struct body *body, int64_t near)
 {
-    const int64_t depth = depth_of(body, pair);
-    return start_distance2(body, pair) * DEPTHS + (depth < DEPTHS ? depth : DEPTHS - 1);
+    const struct near_by *near_by = &body->contacts.near_by;
+    const int64_t depth = depth_of(body, near_by->pairs.list[near]);
+    return near_by->distance2[near] * DEPTHS + (depth < DEPTHS ? depth : DEPTHS - 1);
 }
 
 static bool is_pair(struct pair one, struct pair other)
@@ -71,7 +73,7 @@ static void visit(const struct body *body, int64_t *begin, struct pair *list)
             listed++;
             continue;
         }
-        const int64_t group = group_of(body, pair);
+        const int64_t group = group_of(body, i);
         if (list) list[begin[group]] = pair;
         begin[group]++;
     }
@@ -81,10 +83,8 @@ enum vox_status vox_watch_shape(struct body *body)
 {
     struct contacts *contacts = &body->contacts;
     struct watch *watch = &contacts->watch;
-    const double radius = near_radius(body->model) / body->model->settings.voxel_size;
-    const int64_t largest2 = (int64_t)(radius * radius) + 1, groups = (largest2 + 1) * DEPTHS;
+    const int64_t groups = (body->model->largest2 + 1) * DEPTHS;
     if (!watch->begin) watch->begin = malloc((size_t)(groups + 2) * sizeof *watch->begin);
-    watch->largest2 = largest2;
     free(watch->lost);
     watch->lost = malloc((size_t)contacts->first.n + 1);
     if (!watch->begin || !watch->lost) return VOX_NO_MEMORY;

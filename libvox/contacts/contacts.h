@@ -37,6 +37,7 @@ struct vicinity {
     int32_t *index;       /* of each point in the cube around them */
     int64_t n_cells;
     struct near_cell *cells; /* of voxels that may touch; each pair once */
+    int64_t reach;           /* largest coordinate of a place or cell */
 };
 
 /* ---- one body -------------------------------------------------------------------------------- */
@@ -75,9 +76,10 @@ struct search {
 };
 
 /* All pairs that can be listed while no voxel has strayed from its start. `words` contain one bit
- * per cell of the box. */
+ * per cell of the box, see `row` of a body. */
 struct near_by {
     struct pairs pairs;
+    uint16_t *distance2;   /* [pairs] square of the distance at rest, edges */
     uint64_t *joined;      /* [places][words] whether a shortest path to the place has all bonds */
     uint64_t *bonds;       /* [6][words] */
     uint64_t *skin, *held; /* [words] voxels that may touch others; voxels that are clamped in
@@ -89,11 +91,10 @@ struct near_by {
 /* Pairs near each other that are not listed at rest, sorted by the square of their distance at rest
  * in edges and, for each of them, by the lower depth. */
 struct watch {
-    int64_t largest2;   /* square of the largest distance, edges */
-    int64_t *begin;     /* [(largest2 + 1) * DEPTHS + 1] into `list` */
+    int64_t *begin;     /* [(largest2 of the model + 1) * DEPTHS + 2] into `pairs` */
     struct pairs pairs; /* in this order */
-    uint8_t *lost;      /* [first.n] whether a pair listed at rest has been out of reach since then */
-    double top_speed;   /* m/s, of any voxel so far */
+    uint8_t *lost;    /* [first.n] whether a pair listed at rest has been out of reach since then */
+    double top_speed; /* m/s, of any voxel so far */
 };
 
 /* Number of depths that are distinguished by their order; all larger ones count as the last. */
@@ -106,8 +107,8 @@ struct contacts {
     int64_t most;  /* maximum number of pairs in the list */
     struct near_by near_by;
     struct pairs first; /* the list at rest */
-    struct pairs now; /* the current list */
-    double travelled; /* lattice edges, by the fastest voxel since the list was built */
+    struct pairs now;   /* the current list */
+    double travelled;   /* lattice edges, by the fastest voxel since the list was built */
     struct grid grid;
     struct watch watch;
 };

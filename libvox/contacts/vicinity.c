@@ -80,6 +80,7 @@ enum vox_status vox_vicinity_create(struct vicinity *vicinity, int64_t hops, dou
     const size_t n_places = width * (2 * (size_t)hops * (size_t)hops + 2 * (size_t)hops + 3) / 3;
     const size_t n_cells = (most + 1) * (2 * most + 1) * (2 * most + 1);
     vicinity->hops = hops;
+    vicinity->reach = (int64_t)most > hops ? (int64_t)most : hops;
     vicinity->index = malloc(width * width * width * sizeof *vicinity->index);
     vicinity->places = malloc(n_places * sizeof *vicinity->places);
     vicinity->cells = malloc(n_cells * sizeof *vicinity->cells);

@@ -1,10 +1,46 @@
 /* The bond law (sections 5 and 6) of the fast kernel; included by vector_kernel.h. */
 
+/* ---- the law ------------------------------------------------------------------------------- */
+
+/* Factor of a deformation, and of the same deformation one step before: spring and damper as one
+ * linear function. */
+struct factors {
+    double now, last;
+};
+
+IN_LOOP struct factors factors_of(double stiffness, double damping, double per_second)
+{
+    return (struct factors){stiffness + damping * per_second, damping * per_second};
+}
+
+IN_LOOP double load_of(struct factors factors, double now, double last)
+{
+    return factors.now * now - factors.last * last;
+}
+
+/* The bond law for one end. */
+struct law {
+    struct factors stretch, shear, bend_shear, moment_shear, bend, twist;
+};
+
+IN_LOOP struct law law_of(const struct coupling *c, const struct damper *damper, double per_second)
+{
+    return (struct law){
+        .stretch = factors_of(c->stretch, damper->stretch, per_second),
+        .shear = factors_of(c->shear, damper->shear, per_second),
+        .bend_shear = factors_of(c->bend_shear, damper->bend_shear, per_second),
+        .moment_shear = factors_of(c->bend_shear, damper->moment_shear, per_second),
+        .bend = factors_of(c->bend, damper->bend, per_second),
+        .twist = factors_of(c->twist, damper->twist, per_second),
+    };
+}
+
 /* What applies to all bonds in a step. */
 struct span {
     double per_second; /* 1/dt, or 0 in the first step */
     double limit;      /* depth up to which bonds are computed */
     double most;       /* m, largest stretch */
+    struct law law;    /* of all bonds, unless they differ */
 };
 
 /* ---- rotations ------------------------------------------------------------------------------- */
@@ -172,7 +208,7 @@ IN_LOOP int64_t straighten(const double *restrict depth, struct range range, dou
         sight->stretch[1][i] = choose(small, u.y, 0.0);
         sight->stretch[2][i] = choose(small, u.z, 0.0);
         far[i - group] += (depth[i] <= limit) &
-               ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
+                          ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
     }
     return sum_of(far);
 }
@@ -214,39 +250,6 @@ IN_LOOP struct coupling coupling_in(const struct bonds *bonds, int64_t i)
         BOND_LAW(LOAD)
     };
 #undef LOAD
-}
-
-/* Factor of a deformation, and of the same deformation one step before: spring and damper as one
- * linear function. */
-struct factors {
-    double now, last;
-};
-
-IN_LOOP struct factors factors_of(double stiffness, double damping, double per_second)
-{
-    return (struct factors){stiffness + damping * per_second, damping * per_second};
-}
-
-IN_LOOP double load_of(struct factors factors, double now, double last)
-{
-    return factors.now * now - factors.last * last;
-}
-
-/* The bond law for one end. */
-struct law {
-    struct factors stretch, shear, bend_shear, moment_shear, bend, twist;
-};
-
-IN_LOOP struct law law_of(const struct coupling *c, const struct damper *damper, double per_second)
-{
-    return (struct law){
-        .stretch = factors_of(c->stretch, damper->stretch, per_second),
-        .shear = factors_of(c->shear, damper->shear, per_second),
-        .bend_shear = factors_of(c->bend_shear, damper->bend_shear, per_second),
-        .moment_shear = factors_of(c->bend_shear, damper->moment_shear, per_second),
-        .bend = factors_of(c->bend, damper->bend, per_second),
-        .twist = factors_of(c->twist, damper->twist, per_second),
-    };
 }
 
 /* Stretch of a bond and turns of both ends; the lower end does not turn about the bond. */
@@ -334,7 +337,7 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
     FOR_LANES(i, range)
     {
         const struct coupling c = coupling ? *coupling : coupling_in(bonds, base + i);
-        const struct law law = law_of(&c, &c.lower, span->per_second);
+        const struct law law = coupling ? span->law : law_of(&c, &c.lower, span->per_second);
         const bool there = depth[i] <= limit, is_small = sight->small[i] != 0.0;
         const struct vec p = {sight->stretch[0][i] - sight->rest[i], sight->stretch[1][i],
                               sight->stretch[2][i]};
@@ -391,8 +394,8 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
         } else {
             const struct law other = law_of(&c, &c.upper, span->per_second);
             const struct vec own = force_of(&other, &now, &last);
-            const struct vec moment = moment_of(&other, &now, &last,
-                                                load_of(other.twist, b.x, last.b.x), b, last.b);
+            const struct vec moment =
+                moment_of(&other, &now, &last, load_of(other.twist, b.x, last.b.x), b, last.b);
             put(force_upper, i, there, turn(&m, x_to_axis(axis, own)));
             put(moment_upper, i, there, turn(&m, x_to_axis(axis, moment)));
         }
@@ -410,21 +413,22 @@ IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupl
     const struct bonds *b = &body->bonds[axis];
     struct sight sight;
     if (look(v, b, axis, base, range, span->limit, frames, &sight) == 0)
-        return pull(v, b, coupling, axis, base, range, span, false, false, frames, &sight,
-                    loads) == 0;
+        return pull(v, b, coupling, axis, base, range, span, false, false, frames, &sight, loads) ==
+               0;
     if (straighten(b->depth + base, range, span->limit, &sight) == 0)
-        return pull(v, b, coupling, axis, base, range, span, true, false, frames, &sight,
-                    loads) == 0;
+        return pull(v, b, coupling, axis, base, range, span, true, false, frames, &sight, loads) ==
+               0;
     return pull(v, b, coupling, axis, base, range, span, true, true, frames, &sight, loads) == 0;
 }
 
-/* Set one component of the forces on the voxels of a tile: the forces on them as lower ends of bonds,
- * less the pulls on them as upper ends, which belong to this tile or to earlier ones. */
+/* Set one component of the forces on the voxels of a tile: the forces on them as lower ends of
+ * bonds, less the pulls on them as upper ends, which belong to this tile or to earlier ones. */
 IN_LOOP void collect(double *restrict total, const double *restrict lower, const double *along_x,
                      const double *along_y, const double *along_z)
 {
     NO_LANE_DEPENDS_ON_ANOTHER
-    for (int64_t i = 0; i < TILE; i++) total[i] = ((lower[i] - along_x[i]) - along_y[i]) - along_z[i];
+    for (int64_t i = 0; i < TILE; i++)
+        total[i] = ((lower[i] - along_x[i]) - along_y[i]) - along_z[i];
 }
 
 /* Set the forces and torques on the voxels of a tile to those of their bonds. */
@@ -434,8 +438,9 @@ IN_LOOP void unload(const struct body *body, int64_t base, struct range range,
     FOR_LANES(i, range)
     {
         const struct matrix m = frame_at(frames, i);
-        const struct vec own = turn(&m, (struct vec){loads->own_moment[0][i], loads->own_moment[1][i],
-                                                     loads->own_moment[2][i]});
+        const struct vec own =
+            turn(&m, (struct vec){loads->own_moment[0][i], loads->own_moment[1][i],
+                                  loads->own_moment[2][i]});
         loads->moment[0][i] = -(own.x + loads->moment[0][i]);
         loads->moment[1][i] = -(own.y + loads->moment[1][i]);
         loads->moment[2][i] = -(own.z + loads->moment[2][i]);
@@ -485,8 +490,9 @@ IN_LOOP bool bonds_of_body(const struct body *body, const struct coupling *coupl
 static bool VECTOR(bonds_apply)(struct body *body, double per_second, double limit)
 {
     const struct vox_settings *s = &body->model->settings;
-    const struct span span = {per_second, limit, s->largest_strain * s->voxel_size};
+    struct span span = {
+        .per_second = per_second, .limit = limit, .most = s->largest_strain * s->voxel_size};
     if (!body->coupling) return bonds_of_body(body, NULL, &span);
-    const struct coupling coupling = *body->coupling;
-    return bonds_of_body(body, &coupling, &span);
+    span.law = law_of(body->coupling, &body->coupling->lower, per_second);
+    return bonds_of_body(body, body->coupling, &span);
 }

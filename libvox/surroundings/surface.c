@@ -31,7 +31,7 @@ static int64_t voxel_at(const struct body *body, int64_t x, int64_t y, int64_t z
 {
     const int64_t *length = body->census.length;
     if (x < 0 || y < 0 || z < 0 || x >= length[0] || y >= length[1] || z >= length[2]) return -1;
-    const int64_t slot = body->slot_of[x + length[0] * (y + length[1] * z)];
+    const int64_t slot = body->slot_of[x + body->row[1] * y + body->row[2] * z];
     return body->occupied[slot] ? slot : -1;
 }
 
