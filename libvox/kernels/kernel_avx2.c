@@ -6,6 +6,7 @@
 #ifdef VOX_X86_KERNELS
 #pragma GCC target("avx2,prefer-vector-width=256")
 #define VECTOR(name) avx2_##name
+#define WIDTH 4
 
 #include "vector_kernel.h"
 

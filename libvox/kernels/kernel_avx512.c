@@ -6,6 +6,7 @@
 #ifdef VOX_X86_KERNELS
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
 #define VECTOR(name) avx512_##name
+#define WIDTH 8
 
 #include "vector_kernel.h"
 

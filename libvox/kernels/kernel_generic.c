@@ -2,6 +2,7 @@
 #include "for_vectors.h" /* first: it affects everything below */
 
 #define VECTOR(name) generic_##name
+#define WIDTH 2
 
 #include "vector_kernel.h"
 

@@ -164,7 +164,7 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
         sight->relative[3][i] = turned_axis.z;
         sight->rest[i] = rest;
         sight->small[i] = choose(is, 1.0, 0.0);
-        large[i - group] += (depth[i] <= limit) & !is;
+        large[i - vector] += (depth[i] <= limit) & !is;
     }
     return sum_of(large);
 }
@@ -207,7 +207,7 @@ IN_LOOP int64_t straighten(const double *restrict depth, struct range range, dou
         sight->stretch[0][i] = choose(small, u.x, length);
         sight->stretch[1][i] = choose(small, u.y, 0.0);
         sight->stretch[2][i] = choose(small, u.z, 0.0);
-        far[i - group] += (depth[i] <= limit) &
+        far[i - vector] += (depth[i] <= limit) &
                           ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
     }
     return sum_of(far);
@@ -399,7 +399,7 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
             put(force_upper, i, there, turn(&m, x_to_axis(axis, own)));
             put(moment_upper, i, there, turn(&m, x_to_axis(axis, moment)));
         }
-        overstrained[i - group] += there & !(fabs(p.x) <= most);
+        overstrained[i - vector] += there & !(fabs(p.x) <= most);
     }
     return sum_of(overstrained);
 }

@@ -27,11 +27,12 @@ struct range {
     int64_t first, last; /* excluding `last`; both are equal if there are none */
 };
 
-/* A loop over the groups of a range, and over the lanes of a group, which are computed together. */
-#define FOR_LANES(i, range)                                                   \
-    for (int64_t group = (range).first; group < (range).last; group += GROUP) \
-        NO_LANE_DEPENDS_ON_ANOTHER                                            \
-    for (int64_t i = group; i < group + GROUP; i++)
+/* A loop over the vectors of a range, and over the lanes of a vector, whose number WIDTH is a constant
+ * of the instruction set. */
+#define FOR_LANES(i, range)                                                       \
+    for (int64_t vector = (range).first; vector < (range).last; vector += WIDTH) \
+    NO_LANE_DEPENDS_ON_ANOTHER                                                    \
+    for (int64_t i = vector; i < vector + WIDTH; i++)
 
 /* Return the range of the groups of a tile up to a depth. */
 IN_LOOP struct range range_of(const double *group_depth, int64_t base, double limit)
@@ -45,13 +46,13 @@ IN_LOOP struct range range_of(const double *group_depth, int64_t base, double li
     return range.last == 0 ? (struct range){0, 0} : range;
 }
 
-/* Numbers of events in the lanes of a group; a sum over lanes within a loop would be slow. */
-typedef int64_t counts[GROUP];
+/* Numbers of events in the lanes of vectors; a sum over lanes within a loop would be slow. */
+typedef int64_t counts[WIDTH];
 
 IN_LOOP int64_t sum_of(const counts counts)
 {
     int64_t sum = 0;
-    for (int i = 0; i < GROUP; i++) sum += counts[i];
+    for (int i = 0; i < WIDTH; i++) sum += counts[i];
     return sum;
 }
 

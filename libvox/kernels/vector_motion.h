@@ -36,7 +36,7 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, struct range ran
         const struct vec way = {position.x - sx[i], position.y - sy[i], position.z - sz[i]};
         const double speed2 = choose(moves, vec_dot(velocity, velocity), 0.0);
         const double way2 = choose(moves, vec_dot(way, way), 0.0);
-        lost[i - group] += moves & !(way2 <= too_far * too_far);
+        lost[i - vector] += moves & !(way2 <= too_far * too_far);
         extremes->speed2[i] = choose(speed2 > extremes->speed2[i], speed2, extremes->speed2[i]);
         extremes->way2[i] = choose(way2 > extremes->way2[i], way2, extremes->way2[i]);
         mx[i] = choose(moves, momentum.x, mx[i]);
@@ -86,7 +86,7 @@ static int64_t turn_tile(const struct voxels *v, int64_t base, struct range rang
                                q.z + half * dq.z};
         const double norm = 1.0 / sqrt(r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w);
         const bool straight = r.w * norm >= 1.0;
-        lost[i - group] += moves & !(vec_dot(spin, spin) * turnability[i] <= DBL_MAX);
+        lost[i - vector] += moves & !(vec_dot(spin, spin) * turnability[i] <= DBL_MAX);
         sx[i] = choose(moves, spin.x, sx[i]);
         sy[i] = choose(moves, spin.y, sy[i]);
         sz[i] = choose(moves, spin.z, sz[i]);
