@@ -169,15 +169,16 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
     return sum_of(large);
 }
 
-/* The rotation of a direction onto +x, as in bond.c; its x is 0. */
+/* The rotation of a direction onto +x, as in bond.c; its x is 0. The length times the cosine of half
+ * the angle gives both its sine and its cosine with one division. */
 IN_LOOP struct quat onto_x(struct vec u, double length)
 {
-    const double slope = SLOPE_OF_SMALL_TURN * fabs(u.x), half = 0.5 / u.x;
+    const double slope = SLOPE_OF_SMALL_TURN * fabs(u.x);
     const bool slight = (fabs(u.y) < slope) & (fabs(u.z) < slope);
-    const double cosine = u.x / length, half_cosine = sqrt(0.5 + 0.5 * cosine);
-    const double k = choose(slight, half, 0.5 / (length * half_cosine));
+    const double sum = length + u.x, half = sqrt(0.5 * length * sum);
+    const double k = 0.5 / choose(slight, u.x, half);
     const double y = u.z * k, z = -u.y * k;
-    return (struct quat){choose(slight, 1.0 - 0.5 * (y * y + z * z), half_cosine), 0.0, y, z};
+    return (struct quat){choose(slight, 1.0 - 0.5 * (y * y + z * z), sum * k), 0.0, y, z};
 }
 
 /* Transform the bonds in the large frame; return the number of bonds that are turned too far to
