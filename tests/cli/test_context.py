@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
-from processes import Evoframe
+import toys
+from processes import Evoframe, with_pipe
 
 from evoframe import InputError
 from evoframe.cli.context import needing_extra, scored
@@ -58,3 +60,28 @@ def test_what_an_extra_brings_is_named_where_it_is_missing() -> None:
 )
 def test_common_options_stand_anywhere(evoframe: Evoframe, placed: tuple[str, ...]) -> None:
     assert evoframe(*placed).returncode == 0
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("simulate", "one.toy", "two.toy"),
+        ("simulate", "one.toy", "--trace", "trace.csv"),
+        ("verify", "one.toy", "two.toy"),
+        ("export", "one.toy", "--to", "toy", "--out", "exported.toy"),
+        ("robustness", "one.toy", "two.toy", "--controllers", "2", "--out", "measured"),
+        ("robustness", "--published", "--controllers", "2", "--out", "measured"),
+    ],
+    ids=" ".join,
+)
+def test_a_preset_may_come_from_a_pipe(evoframe: Evoframe, tmp_path: Path, command: tuple[str, ...]) -> None:
+    """It is read once, also for several files; a second command refuses to write anything else."""
+    text = toys.CONFIGURATION
+    (tmp_path / "toy.toml").write_text(text)
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.toy").write_text("designs = [{ a = 2.0, b = 3.0 }]\nsettings = { gain = 2.0 }\n")
+    simulator = "toy-steered" if command[0] == "robustness" else "toy-varied"
+    words = [*command, "-p", toys.__file__, "--set", f"simulator={simulator}", "--preset"]
+    from_file, piped = evoframe(*words, "toy.toml"), with_pipe(text, *words, directory=tmp_path)
+    assert from_file.returncode == 0, from_file.stderr
+    assert (piped.returncode, piped.stdout, piped.stderr) == (0, from_file.stdout, from_file.stderr)

@@ -20,7 +20,7 @@ from evoframe.errors import InputError
 from evoframe.messages import quantity
 
 if TYPE_CHECKING:
-    from evoframe.config import Layer
+    from evoframe.config import Layer, Layers
     from evoframe.contract import Design, RunConfig, Score
     from evoframe.registry import Plugins
 
@@ -37,6 +37,7 @@ __all__ = [
     "plugin_options",
     "plugins_of",
     "preset_option",
+    "read_preset",
     "scored",
     "set_option",
     "span",
@@ -207,6 +208,13 @@ def _complete_preset(_: click.Context, __: click.Parameter, incomplete: str) -> 
     return [*presets, CompletionItem(incomplete, type="file")]
 
 
+def read_preset(_: click.Context, __: click.Parameter, preset: str | None) -> Layers | None:
+    """Return the settings of a preset or TOML file, read once: it may be a pipe."""
+    from evoframe.config import read_layers
+
+    return None if preset is None else read_layers(preset)
+
+
 def configuration_argument(function: F) -> F:
     """Add the argument for a preset or a configuration file."""
     return click.argument(
@@ -215,9 +223,10 @@ def configuration_argument(function: F) -> F:
 
 
 def preset_option(function: F) -> F:
-    """Add ``--preset P`` to a command that takes files."""
+    """Add ``--preset P`` to a command that takes files, passed on as its layers of settings."""
     return click.option(
         "--preset",
+        callback=read_preset,
         metavar="P",
         shell_complete=_complete_preset,
         help="Preset (or TOML file) for settings that the file does not contain, and for the objective. With "

@@ -25,7 +25,7 @@ from evoframe.cli.context import (
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, files_of, read_jobs
 from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, refuse_inputs, write_file
-from evoframe.config import Layer
+from evoframe.config import Layer, Layers
 from evoframe.contract import Score, unit_of
 from evoframe.designs import Job, naming, simulate_job, trace_of
 from evoframe.errors import InputError
@@ -67,7 +67,7 @@ Examples:
 def simulate(
     ctx: click.Context,
     files: tuple[Path, ...],
-    preset: str | None,
+    preset: Layers | None,
     overrides: tuple[str, ...],
     as_json: bool,
     trace: Path | None,

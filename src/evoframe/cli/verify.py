@@ -21,7 +21,7 @@ from evoframe.cli.context import (
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, read_jobs
 from evoframe.cli.streams import echo
-from evoframe.config import Layer
+from evoframe.config import Layer, Layers
 from evoframe.designs import Job, keep_of_job, verdict, verify_job
 from evoframe.messages import quantity, unit_name
 from evoframe.record import Finding, Verification
@@ -48,7 +48,7 @@ Examples:
 def verify(
     ctx: click.Context,
     sources: tuple[Path, ...],
-    preset: str | None,
+    preset: Layers | None,
     overrides: tuple[str, ...],
     as_json: bool,
     workers: list[Layer],
