@@ -9,7 +9,7 @@ import pytest
 import toys
 from processes import Evoframe, with_pipe
 
-from evoframe import InputError
+from evoframe import InputError, load_run
 from evoframe.cli.context import needing_extra, scored
 
 
@@ -85,3 +85,48 @@ def test_a_preset_may_come_from_a_pipe(evoframe: Evoframe, tmp_path: Path, comma
     from_file, piped = evoframe(*words, "toy.toml"), with_pipe(text, *words, directory=tmp_path)
     assert from_file.returncode == 0, from_file.stderr
     assert (piped.returncode, piped.stdout, piped.stderr) == (0, from_file.stdout, from_file.stderr)
+
+
+NUMBERED = """
+import attrs, toys
+from evoframe import hookimpl
+
+@attrs.frozen
+class Numbered(toys.Varied):
+    bit_generation = {number}
+
+    def _amplified(self, outcome):
+        return attrs.evolve(outcome, tracks={{"value": {factor!r} * outcome.tracks["value"]}})
+
+@hookimpl
+def evoframe_simulators():
+    return {{"numbered": Numbered}}
+"""
+
+
+def test_scores_of_another_bit_generation_are_named_where_they_differ(
+    evoframe: Evoframe, tmp_path: Path
+) -> None:
+    def numbered(*command: str, number: int, factor: float) -> tuple[int, str]:
+        (tmp_path / "numbered.py").write_text(NUMBERED.format(number=number, factor=factor))
+        plugins = ["-p", toys.__file__, "-p", "numbered.py"]
+        ran = evoframe(*command, *plugins, PYTHONPATH=str(Path(toys.__file__).parent))
+        return ran.returncode, ran.stderr
+
+    (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
+    made = ("run", "toy.toml", "--set", "simulator=numbered", "--out", "here", "-q")
+    assert numbered(*made, number=1, factor=1.0) == (0, "")
+    score = load_run(tmp_path / "here").champion().score
+    warning = (
+        f"Warning: here: scored {score!r} in the run; bit generation of simulator 'numbered': 1 then, 2 now\n"
+    )
+    for command in (("simulate", "here"), ("verify", "here")):
+        assert numbered(*command, number=2, factor=1.0) == (0, "")
+        assert numbered(*command, number=2, factor=1.0 + 1e-12) == (0, warning)
+        assert numbered(*command, "-q", number=2, factor=1.0 + 1e-12) == (0, "")
+    assert load_run(tmp_path / "here").verification() is not None
+    (tmp_path / "here" / "verification.json").unlink()
+    verified = numbered("resume", "here", number=2, factor=1.0 + 1e-12)
+    assert verified[0] == 0
+    assert warning in verified[1]
+    assert numbered("doctor", "here", number=2, factor=1.0 + 1e-12) == (0, "")

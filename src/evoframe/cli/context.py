@@ -22,6 +22,7 @@ from evoframe.messages import quantity
 if TYPE_CHECKING:
     from evoframe.config import Layer, Layers
     from evoframe.contract import Design, RunConfig, Score
+    from evoframe.record import Run
     from evoframe.registry import Plugins
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "set_option",
     "span",
     "warn_overlooked",
+    "warn_unreproduced",
     "workers_option",
 ]
 
@@ -168,6 +170,15 @@ def warn_overlooked(
     found = overlooked(config, designs, scores)
     if found is not None and not is_quiet(ctx):
         click.echo(f"Warning: {source}: the objective '{config.objective.name}' {found}", err=True)
+
+
+def warn_unreproduced(ctx: click.Context, run: Run, config: RunConfig, then: float, now: Score) -> None:
+    """Warn if the champion of a run does not have its score any more, because the bit generation changed."""
+    from evoframe.record import changed_scoring
+
+    changes = changed_scoring(run, config)
+    if changes and now.value != then and not is_quiet(ctx):
+        click.echo(f"Warning: {run.directory}: scored {then!r} in the run; {changes}", err=True)
 
 
 def is_quiet(ctx: click.Context) -> bool:

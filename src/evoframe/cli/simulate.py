@@ -20,6 +20,7 @@ from evoframe.cli.context import (
     set_option,
     span,
     warn_overlooked,
+    warn_unreproduced,
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, files_of, read_jobs
@@ -116,6 +117,8 @@ def simulate(
                 echo(f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}")
     for job, scores in scored_jobs:
         warn_overlooked(ctx, job.path, job.config, job.designs, scores)
+        if job.run is not None and job.score is not None:
+            warn_unreproduced(ctx, job.run, job.config, job.score, scores[0])
 
 
 @attrs.frozen
