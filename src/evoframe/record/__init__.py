@@ -4,6 +4,7 @@ from evoframe.record.champion import Champion, design_from_json, read_champion
 from evoframe.record.checksums import CHAINED, SINGLE
 from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, RECORD_FILES
 from evoframe.record.provenance import (
+    bit_generations_of,
     changed_generations,
     changed_provenance,
     changed_scoring,
@@ -27,6 +28,7 @@ __all__ = [
     "Run",
     "Store",
     "Verification",
+    "bit_generations_of",
     "changed_generations",
     "changed_provenance",
     "changed_scoring",

@@ -20,6 +20,7 @@ from evoframe.documents import Tree, differences
 from evoframe.record.run import Run
 
 __all__ = [
+    "bit_generations_of",
     "changed_generations",
     "changed_provenance",
     "changed_scoring",
@@ -43,9 +44,9 @@ def provenance_of(config: RunConfig) -> Tree:
             libraries |= chosen.component.provenance()
     deciding = dict(_deciding(config))
     generations = {
-        key: chosen.component.bit_generation
-        for key, chosen in deciding.items()
-        if isinstance(chosen.component, SupportsBitGeneration)
+        key: number
+        for key, number in bit_generations_of(config).items()
+        if isinstance(deciding[key].component, SupportsBitGeneration)
     }
     sources = [chosen.source for chosen in deciding.values()]
     local = {source.distribution: source.digest for source in sources if source.digest}
@@ -78,19 +79,23 @@ def changed_generations(run: Run, config: RunConfig) -> dict[str, str]:
     Returns:
         Dotted key of the component -> the line, with both generations.
     """
-    then = recorded_generations(run)
-    lines = {}
-    for key, chosen in _deciding(config):
-        before, now = then.get(key, 1), bit_generation_of(chosen.component)
-        if before != now:
-            lines[key] = f"bit generation of {key} '{chosen.name}': {before} then, {now} now"
-    return lines
+    then, chosen = recorded_generations(run), dict(_deciding(config))
+    return {
+        key: f"bit generation of {key} '{chosen[key].name}': {then.get(key, 1)} then, {now} now"
+        for key, now in bit_generations_of(config).items()
+        if then.get(key, 1) != now
+    }
 
 
 def changed_scoring(run: Run, config: RunConfig) -> str:
     """Return the lines of :func:`changed_generations` about simulator and objective, which give scores."""
     scoring, changed = config.simulation(), changed_generations(run, config)
     return "; ".join(line for key, line in changed.items() if key in scoring)
+
+
+def bit_generations_of(config: RunConfig) -> dict[str, int]:
+    """Return the bit generation of each component that determines the result, by its dotted key."""
+    return {key: bit_generation_of(chosen.component) for key, chosen in _deciding(config)}
 
 
 def recorded_generations(run: Run) -> dict[str, int]:
@@ -100,7 +105,7 @@ def recorded_generations(run: Run) -> dict[str, int]:
     """
     recorded: Any = run.config.get("provenance", {}).get(_GENERATIONS)
     found = recorded.items() if isinstance(recorded, Mapping) else ()
-    return {key: number for key, number in found if isinstance(number, int)}
+    return {key: number for key, number in found if type(number) is int and number >= 1}
 
 
 def _deciding(config: RunConfig) -> Iterator[tuple[str, Chosen[Any]]]:
