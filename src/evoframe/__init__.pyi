@@ -20,6 +20,7 @@ from .contract.drawings import (
     NetworkLink as NetworkLink,
 )
 from .contract.optional import (
+    SupportsBitGeneration as SupportsBitGeneration,
     SupportsDialects as SupportsDialects,
     SupportsDuration as SupportsDuration,
     SupportsExemptions as SupportsExemptions,

@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from processes import Evoframe
+from processes import Evoframe, with_pipe
 
 
 def test_config_show_prints_what_can_be_run(evoframe: Evoframe, tmp_path: Path) -> None:
@@ -37,6 +37,14 @@ def test_config_new_writes_a_file_that_can_be_run(evoframe: Evoframe, tmp_path: 
     assert "evoframe run my.toml" in written.stderr
     assert evoframe("config", "show", "my.toml").stdout == evoframe("config", "show", "quick").stdout
     assert evoframe("config", "new", "-", "--preset", "quick").stdout == (tmp_path / "my.toml").read_text()
+
+
+def test_config_new_sets_every_option_if_its_preset_is_a_pipe(evoframe: Evoframe, tmp_path: Path) -> None:
+    """A pipe cannot be extended later."""
+    shown = evoframe("config", "show", "quick").stdout
+    written = with_pipe(shown, "config", "new", "my.toml", "--preset", directory=tmp_path)
+    assert written.returncode == 0, written.stderr
+    assert evoframe("config", "show", "my.toml").stdout == shown
 
 
 def test_config_new_overwrites_nothing_unasked(evoframe: Evoframe, tmp_path: Path) -> None:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import re
-import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import toys
-from processes import Evoframe, surroundings
+from processes import Evoframe, with_pipe
 
 import evoframe as package
 from evoframe.messages import quantity
@@ -47,15 +44,7 @@ def test_the_fittest_who_have_not_met_do_at_the_end(evoframe: Evoframe, tmp_path
 
 def test_a_configuration_may_come_from_a_pipe(tmp_path: Path) -> None:
     """It is read once, as from a process substitution of a shell."""
-    words = shlex.join([sys.executable, "-m", "evoframe", "run", "--out", "here", "-q"])
     given = "extends = 'quick'\n[run]\ngenerations = 0"
-    ran = subprocess.run(
-        ["bash", "-c", f"{words} <(echo {shlex.quote(given)})"],  # noqa: S607 - the user's shell
-        cwd=tmp_path,
-        env=surroundings(),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    ran = with_pipe(given, "run", "--out", "here", "-q", directory=tmp_path)
     assert (ran.returncode, ran.stderr) == (0, "")
     assert package.load_run(tmp_path / "here").config["run"]["generations"] == 0

@@ -23,6 +23,7 @@ from evoframe.contract.optional import (
     SupportsVariants,
     SupportsWindow,
     Variant,
+    bit_generation_of,
     unit_of,
     window_of,
 )
@@ -97,6 +98,13 @@ def test_a_capability_requires_the_protocol_of_its_kind() -> None:
 def test_an_objective_may_have_a_unit() -> None:
     assert isinstance(toys.Late(), SupportsUnit)
     assert (unit_of(toys.Late()), unit_of(toys.Value())) == ("m", "")
+
+
+def test_a_component_that_states_no_generation_gives_its_first_results() -> None:
+    class Changed(toys.Value):
+        bit_generation = 3
+
+    assert (bit_generation_of(toys.Value()), bit_generation_of(Changed())) == (1, 3)
 
 
 def test_the_window_of_an_objective_is_the_whole_record_unless_it_says_otherwise() -> None:

@@ -12,6 +12,7 @@ import pytest
 import toys
 
 from evoframe import ConfigurationError, InputError, Run, RunConfig, discover, run
+from evoframe.config import read_layers
 from evoframe.contract import FileOptions
 from evoframe.designs.sources import read_job
 from evoframe.registry.registry import Plugins
@@ -58,7 +59,7 @@ def gain_of(config: RunConfig) -> Any:
 
 class TestFile:
     def test_brings_designs_with_labels(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
-        job = read_job(toy_path(WITH_SETTINGS), varied, [], plugins)
+        job = read_job(toy_path(WITH_SETTINGS), read_layers(varied), [], plugins)
         assert job.labels == ("two.toy[0]", "two.toy[1]")
         assert [sorted(design.roles) for design in job.designs] == [["a", "b"], ["a"]]
         assert (job.run, job.score) == (None, None)
@@ -66,11 +67,11 @@ class TestFile:
     def test_brings_settings_that_replace_those_of_the_preset(
         self, plugins: Plugins, varied: str, toy_path: Written
     ) -> None:
-        assert gain_of(read_job(toy_path(WITH_SETTINGS), varied, [], plugins).config) == 2.0
-        assert gain_of(read_job(toy_path(WITHOUT), varied, [], plugins).config) == 7.0
+        assert gain_of(read_job(toy_path(WITH_SETTINGS), read_layers(varied), [], plugins).config) == 2.0
+        assert gain_of(read_job(toy_path(WITHOUT), read_layers(varied), [], plugins).config) == 7.0
 
     def test_is_overridden_by_settings(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
-        job = read_job(toy_path(WITH_SETTINGS), varied, ["simulator.gain=5"], plugins)
+        job = read_job(toy_path(WITH_SETTINGS), read_layers(varied), ["simulator.gain=5"], plugins)
         assert job.config.tables()["simulator"] == {"name": "toy-varied", "limit": 100.0, "gain": 5.0}
 
     def test_is_read_by_the_simulator_in_the_settings(
@@ -78,7 +79,7 @@ class TestFile:
     ) -> None:
         path = tmp_path / "plain.toml"
         path.write_text(toys.CONFIGURATION)
-        job = read_job(toy_path(WITH_SETTINGS), str(path), ["simulator=toy-varied"], plugins)
+        job = read_job(toy_path(WITH_SETTINGS), read_layers(path), ["simulator=toy-varied"], plugins)
         assert gain_of(job.config) == 2.0
 
     def test_completes_settings_that_are_invalid_without_it(
@@ -87,7 +88,7 @@ class TestFile:
         path = tmp_path / "narrow.toml"
         fitting = 'name = "toy-fitting"\nlimit = 1.0'
         path.write_text(toys.CONFIGURATION.replace('name = "toy-product"', fitting))
-        job = read_job(toy_path(WITH_SETTINGS), str(path), ["simulator.gain=50"], plugins)
+        job = read_job(toy_path(WITH_SETTINGS), read_layers(path), ["simulator.gain=50"], plugins)
         assert job.config.tables()["simulator"] == {"name": "toy-fitting", "limit": 100.0, "gain": 50.0}
 
     def test_with_a_fault_in_its_settings_is_named(
@@ -95,7 +96,7 @@ class TestFile:
     ) -> None:
         path = toy_path(WITH_SETTINGS.replace("gain = 2.0", "gain = -1.0\nspeed = 3"))
         with pytest.raises(ConfigurationError) as caught:
-            read_job(path, varied, [], plugins)
+            read_job(path, read_layers(varied), [], plugins)
         assert re.search(rf"{path}: simulator\.gain: .*-1\.0", str(caught.value))
         assert f"{path}: simulator.speed: " in str(caught.value)
 
@@ -104,13 +105,13 @@ class TestFile:
     ) -> None:
         path = toy_path(WITH_SETTINGS)
         with pytest.raises(ConfigurationError, match=r"objective: .*1\.0 .*3\.0"):
-            read_job(path, varied, ['objective={name="toy-late", until=3.0}'], plugins)
+            read_job(path, read_layers(varied), ['objective={name="toy-late", until=3.0}'], plugins)
 
     def test_reports_all_faults_of_the_settings(
         self, plugins: Plugins, varied: str, toy_path: Written
     ) -> None:
         with pytest.raises(ConfigurationError, match=r"run\.seed(.|\n)*simulator: .*nothing"):
-            read_job(toy_path(WITHOUT), varied, ["simulator=nothing", "run.seed=-1"], plugins)
+            read_job(toy_path(WITHOUT), read_layers(varied), ["simulator=nothing", "run.seed=-1"], plugins)
 
     def test_whose_settings_cannot_deliver_the_record_need_not_be_scored(
         self, plugins: Plugins, varied: str, toy_path: Written
@@ -119,14 +120,16 @@ class TestFile:
         late.write_text(late.read_text().replace('"toy-value"', '"toy-late"\nuntil = 3.0'))
         path = toy_path(WITHOUT)
         with pytest.raises(ConfigurationError) as caught:
-            read_job(path, varied, [], plugins)
+            read_job(path, read_layers(varied), [], plugins)
         assert [fault.key for fault in caught.value.faults] == ["objective"]
         [fault] = caught.value.faults
-        assert read_job(path, varied, [], plugins, scored=False).unscored == fault.problem
-        assert read_job(path, varied, ["objective.until=1.0"], plugins, scored=False).unscored == ""
+        assert read_job(path, read_layers(varied), [], plugins, scored=False).unscored == fault.problem
+        assert (
+            read_job(path, read_layers(varied), ["objective.until=1.0"], plugins, scored=False).unscored == ""
+        )
         for asked in (["objective.until=2.0"], ['objective={name="toy-late", until=2.0}']):
             with pytest.raises(ConfigurationError) as caught:
-                read_job(path, varied, asked, plugins, scored=False)
+                read_job(path, read_layers(varied), asked, plugins, scored=False)
             assert caught.value.faults[0].source == f"--set {asked[0]}"
 
     def test_for_a_simulator_that_cannot_read_files_is_refused(
@@ -134,7 +137,7 @@ class TestFile:
     ) -> None:
         path = toy_path(WITHOUT)
         with pytest.raises(ConfigurationError, match="'toy-product'") as caught:
-            read_job(path, varied, ["simulator=toy-product"], plugins)
+            read_job(path, read_layers(varied), ["simulator=toy-product"], plugins)
         assert (caught.value.source, caught.value.key) == (str(path), "simulator")
 
 
@@ -166,7 +169,7 @@ class TestObjective:
         assert job.config.simulation()["objective"] == {"name": "toy-late", "until": 0.25}
 
     def test_is_that_of_a_given_preset(self, plugins: Plugins, varied: str, toy_path: Written) -> None:
-        job = read_job(toy_path(WITH_SETTINGS), varied, [self.SUGGESTING], plugins)
+        job = read_job(toy_path(WITH_SETTINGS), read_layers(varied), [self.SUGGESTING], plugins)
         assert job.config.objective.name == "toy-value"
 
     def test_that_does_not_exist_is_a_fault_of_the_file(
@@ -225,7 +228,7 @@ class TestRun:
         self, plugins: Plugins, finished: Run, varied: str, toy_file: Path
     ) -> None:
         for path in (finished.directory, finished.directory / "champion.json"):
-            job = read_job(path, str(toy_file), [], plugins)
+            job = read_job(path, read_layers(toy_file), [], plugins)
             assert job.config.simulator.name == "toy-product"
             assert job.score is None
 

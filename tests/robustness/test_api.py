@@ -23,6 +23,16 @@ class TestFromPython:
         louder = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins, simulator={"gain": 2.0})
         assert (louder.scores == 2 * found.scores).all()
 
+    def test_a_preset_replaces_the_settings_of_the_runs(
+        self, toy_plugins: Plugins, toy_file: Path, two_runs: list[str]
+    ) -> None:
+        Path("louder.toml").write_text(
+            f'extends = "{toy_file}"\n[simulator]\nname = "toy-steered"\ngain = 2.0'
+        )
+        found = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins)
+        louder = measure_robustness(*two_runs, controllers=5, plugins=toy_plugins, preset="louder.toml")
+        assert (louder.scores == 2 * found.scores).all()
+
     def test_a_file_with_settings_is_scored_by_what_it_is(self) -> None:
         walker = Path(__file__).parents[1] / "data" / "measures" / "walker.vxa"
         measured = measure_robustness(walker, controllers=1)

@@ -11,6 +11,7 @@ import pytest
 import toys
 
 from evoframe import ConfigurationError, Design, InputError, Plugins, run
+from evoframe.config import read_layers
 from evoframe.contract.config import RunConfig
 from evoframe.robustness.candidates import Candidates, read_candidates
 from evoframe.study.conduct import claim
@@ -39,7 +40,8 @@ def read(here: Path, toy_file: Path, toy_plugins: Plugins) -> Read:
         *sources: str, preset: str | None = None, overrides: Sequence[str] = (), published: bool = False
     ) -> Candidates:
         paths = [Path(source) for source in sources]
-        return read_candidates(paths, preset, overrides, toy_plugins, published=published)
+        base = None if preset is None else read_layers(preset)
+        return read_candidates(paths, base, overrides, toy_plugins, published=published)
 
     return read_them
 

@@ -175,6 +175,32 @@ def test_a_champion_with_a_different_score_is_detected(
     assert re.search(rf"{re.escape(repr(score))} .* 0\.125$", found["champion"])
 
 
+def test_a_score_of_another_bit_generation_is_no_damage(
+    finished: Path, toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    score = load_run(finished).champion().score
+    monkeypatch.setattr(toys.Product, "bit_generation", 2, raising=False)
+    assert not problems(list(check_run(finished, toy_plugins)))
+    assert finding_of(list(check_run(finished, toy_plugins)), "champion").startswith(f"scores {score!r}")
+    monkeypatch.setattr(toys.Value, "score", lambda *_: 0.125)
+    noted = {
+        check.subject: check.finding for check in check_run(finished, toy_plugins) if check.state == "note"
+    }
+    changes = "bit generation of simulator 'toy-product': 1 then, 2 now"
+    assert noted == {
+        "versions": f"changed since the start of the run: {changes}",
+        "champion": f"scored {score!r} in the run, but now scores 0.125: {changes}",
+    }
+
+
+def test_another_bit_generation_of_what_gives_no_score_excuses_nothing(
+    finished: Path, toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(toys.Drift, "bit_generation", 2, raising=False)
+    monkeypatch.setattr(toys.Value, "score", lambda *_: 0.125)
+    assert list(problems(list(check_run(finished, toy_plugins)))) == ["champion"]
+
+
 def test_a_champion_that_diverges_now_is_detected(
     finished: Path, toy_plugins: Plugins, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -161,6 +161,19 @@ class TestRefusal:
         recorded = json.loads(resumed.resumes()[-1]["differences"])
         assert [line for line in recorded if re.match(changes[0], line)]
 
+    def test_of_another_bit_generation_names_component_generations_and_option(
+        self, toy_plugins: Plugins, left: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The run was recorded without a number, as by earlier versions of evoframe."""
+        monkeypatch.setattr(toys.Product, "bit_generation", 2, raising=False)
+        change = "bit generation of simulator 'toy-product': 1 then, 2 now"
+        command = f"evoframe resume {left} --allow-different-versions"
+        with pytest.raises(ConfigurationError, match=f"\n  {change}\n.*{command}$") as caught:
+            resume(left, plugins=toy_plugins)
+        assert caught.value.source == str(left)
+        resumed = resume(left, plugins=toy_plugins, allow_different_versions=True)
+        assert json.loads(resumed.resumes()[-1]["differences"]) == [change]
+
     def test_of_another_source_of_a_local_plugin_names_it(self, toy_config: Load, tmp_path: Path) -> None:
         made, edited = Plugins(), Plugins()
         for plugins, digest in ((made, "sha256:one"), (edited, "sha256:two")):

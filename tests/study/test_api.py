@@ -145,6 +145,24 @@ def test_rows_of_another_session_count_as_finished(run: Callable[..., StudyResul
     assert [row.score for row in imported.rows.values()] == [row.score for row in made.rows.values()]
 
 
+def test_results_of_different_bit_generations_are_named_before_any_run(
+    run: Callable[..., StudyResult], few: Study, caplog: pytest.LogCaptureFixture
+) -> None:
+    made = run()
+    [first, _] = made.rows
+    config = first.directory / "config.toml"
+    changed = "[provenance]\nbit_generations = {'populations.a.evolver' = 2}\n"
+    config.write_text(config.read_text().replace("[provenance]\n", changed))
+    assert not caplog.records
+    again = run()
+    plan_study(few, out=made.directory)
+    assert [record.levelname for record in caplog.records] == ["WARNING", "WARNING"]
+    for record in caplog.records:
+        assert "(populations.a.evolver 'toy-drift': 1 and 2)" in record.message
+    assert [row.bit_generations for row in again.rows.values()] == ["populations.a.evolver=2", ""]
+    assert [row.bit_generation("populations.a.evolver") for row in again.rows.values()] == [2, 1]
+
+
 def test_the_directory_of_something_else_is_refused(run: Callable[..., StudyResult], tmp_path: Path) -> None:
     (tmp_path / "letters").mkdir()
     (tmp_path / "letters" / "letter").touch()

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import attrs
 import pytest
+import toys
 
 from evoframe import InputError, load_run, run
 from evoframe.study.conduct import claim, survey
-from evoframe.study.gathered import gather, import_rows, imported_rows
+from evoframe.study.gathered import gather, import_rows, imported_rows, mixed_generations
 from evoframe.study.plan import Planned, Study
 from evoframe.study.progress import record_failure
 from evoframe.study.rows import Row, read_rows, row_of, write_rows
@@ -199,3 +200,41 @@ def test_a_file_that_is_not_a_table_of_rows_is_refused(
     with pytest.raises(InputError, match="missing columns: ") as caught:
         import_rows(study, directory, [tmp_path / "rows.csv"])
     assert caught.value.source == str(tmp_path / "rows.csv")
+
+
+class TestBitGenerations:
+    def test_are_named_if_results_contradict_each_other(
+        self, made: tuple[Study, Path, list[Planned]], tmp_path: Path
+    ) -> None:
+        study, directory, _ = made
+        first, *others = kept(study, directory)
+        there = tmp_path / "there"
+        claim(study, there)
+        import_rows(study, there, [directory / "rows.csv"])
+        newer = attrs.evolve(first, bit_generations="simulator=2")
+        write_rows([newer, *others], tmp_path / "rows.csv")
+        import_rows(study, there, [tmp_path / "rows.csv"])  # the same results
+        assert {row.bit_generations for row in imported_rows(study, there).values()} == {""}
+        write_rows([attrs.evolve(newer, score=first.score + 1e-9), *others], tmp_path / "rows.csv")
+        with pytest.raises(InputError, match=r"; bit_generations was 1, is simulator=2$"):
+            import_rows(study, there, [tmp_path / "rows.csv"])
+
+    def test_that_differ_between_runs_are_listed(
+        self, made: tuple[Study, Path, list[Planned]], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        study, directory, planned = made
+        rows = gather(survey(study, directory), {})
+        assert [run.cell.config.simulator.name for run in planned] == ["toy-product", "toy-varied"] * 2
+        newer = "simulator=3"
+        assert mixed_generations(rows) == []
+        changed = {run: attrs.evolve(row, bit_generations=newer) for run, row in rows.items()}
+        assert mixed_generations(changed) == []
+        assert mixed_generations({**rows, planned[1]: changed[planned[1]]}) == [
+            "simulator 'toy-varied': 1 and 3"
+        ]
+        missing = planned[0]
+        others = {run: row for run, row in rows.items() if run != missing}
+        assert mixed_generations(others, [missing]) == []
+        monkeypatch.setattr(toys.Product, "bit_generation", 2, raising=False)
+        assert mixed_generations(rows) == []
+        assert mixed_generations(others, [missing]) == ["simulator 'toy-product': 1 and 2"]

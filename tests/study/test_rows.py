@@ -32,6 +32,7 @@ rows = st.builds(
     simulations=st.integers(0, 10**9),
     seconds=finite,
     champion=words,
+    bit_generations=st.sampled_from(["", "simulator=2", "populations.a.evolver=3 simulator=2"]),
 )
 
 
@@ -62,6 +63,27 @@ def test_a_row_has_the_figures_of_its_run(made: tuple[Study, Path, list[Planned]
     assert len(row.fitness_curve) == len(row.score_curve) == 5
     assert list(row.score_curve) == sorted(row.score_curve)
     assert row.score_curve[0] == max(pair["score"] for pair in finished.pairs() if pair["turn"] == 0)
+
+
+def test_a_row_has_the_bit_generations_with_which_its_run_started(
+    made: tuple[Study, Path, list[Planned]],
+) -> None:
+    finished = load_run(made[2][0].directory)
+    assert row_of(made[2][0], finished).bit_generations == ""
+    finished.config["provenance"]["bit_generations"] = {"simulator": 3, "aggregator": 1, "x y": 2, "run": -1}
+    row = row_of(made[2][0], finished)
+    assert row.bit_generations == "simulator=3"
+    assert (row.bit_generation("simulator"), row.bit_generation("aggregator")) == (3, 1)
+
+
+@pytest.mark.parametrize("text", ["simulator", "simulator=0", "simulator=x", "=2", "simulator=2=3"])
+def test_bit_generations_that_are_none_are_refused(
+    made: tuple[Study, Path, list[Planned]], tmp_path: Path, text: str
+) -> None:
+    row = row_of(made[2][0], load_run(made[2][0].directory))
+    write_rows([attrs.evolve(row, bit_generations=text)], tmp_path / "rows.csv")
+    with pytest.raises(InputError, match=f"bit generations as in simulator=2, found {text}"):
+        read_rows(tmp_path / "rows.csv")
 
 
 def test_the_curve_of_scores_is_the_best_so_far_after_each_generation(

@@ -6,6 +6,7 @@ import contextlib
 import os
 import pty
 import select
+import shlex
 import subprocess
 import sys
 import threading
@@ -49,6 +50,20 @@ def python(
     except subprocess.TimeoutExpired as error:
         said = [text for text in (error.stdout, error.stderr) if text]
         raise AssertionError(f"the program still runs after {LIMIT:g} s: {said}") from error
+
+
+def with_pipe(text: str, *arguments: object, directory: Path) -> subprocess.CompletedProcess[str]:
+    """Run the program in a shell, with a process substitution that prints *text* as its last argument."""
+    words = shlex.join([sys.executable, "-m", "evoframe", *map(str, arguments)])
+    return subprocess.run(
+        ["bash", "-c", f"{words} <(printf %s {shlex.quote(text)})"],  # noqa: S607 - the user's shell
+        cwd=directory,
+        env={**surroundings(), "COLUMNS": "100"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=LIMIT,
+    )
 
 
 def eventually(condition: Callable[[], object], failure: str) -> None:

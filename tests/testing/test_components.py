@@ -1,7 +1,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import attrs
 import pytest
@@ -15,6 +15,7 @@ FROZEN = "test_it_is_a_frozen_attrs_class"
 EXPLAINED = "test_options_have_a_type_and_a_default_or_an_explanation"
 DEFAULTS = "test_defaults_are_valid"
 SURVIVES = "test_options_survive_a_configuration_file"
+NUMBERED = "test_a_bit_generation_is_a_number_from_1"
 
 
 @attrs.frozen
@@ -78,6 +79,27 @@ class CannotBeWritten:
     n: complex = 1j
 
 
+@attrs.frozen
+class Numbered:
+    """A component that states the generation of its results."""
+
+    bit_generation: ClassVar[Any] = 2
+
+
+@attrs.frozen
+class NumberedInWords(Numbered):
+    """A component that states it in words."""
+
+    bit_generation: ClassVar[Any] = "two"
+
+
+@attrs.frozen
+class NumberedFromZero(Numbered):
+    """A component that counts from 0."""
+
+    bit_generation: ClassVar[Any] = 0
+
+
 @attrs.frozen(eq=False)
 class NeverEqual:
     """A component that differs from its own copy."""
@@ -85,7 +107,7 @@ class NeverEqual:
     n: int = 2
 
 
-@pytest.mark.parametrize("component", [Plain(), Plain(n=3), NoOptions(), Explained(n=1)], ids=str)
+@pytest.mark.parametrize("component", [Plain(), Plain(n=3), NoOptions(), Explained(n=1), Numbered()], ids=str)
 def test_a_sound_component_passes(
     component: Any, keeps: Callable[..., None], laws: Callable[..., list[str]]
 ) -> None:
@@ -101,6 +123,8 @@ def test_a_sound_component_passes(
         (Unexplained(n=1), EXPLAINED),
         (Untyped(), EXPLAINED),
         (NeverEqual(), SURVIVES),
+        (NumberedInWords(), NUMBERED),
+        (NumberedFromZero(), NUMBERED),
     ],
     ids=str,
 )

@@ -11,12 +11,14 @@ from evoframe.cli.context import (
     common_options,
     configuration_argument,
     plugins_of,
+    read_preset,
     set_option,
 )
 from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
-from evoframe.config import commented, load_config, starter
+from evoframe.config import Layers, commented, complete_config, load_config, preset_names, starter
 from evoframe.errors import InputError
+from evoframe.files import is_file
 
 __all__ = ["config"]
 
@@ -54,21 +56,35 @@ Examples:
 """
 )
 @click.argument("path", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True))
-@click.option("--preset", default="paper", show_default=True, metavar="P", help="Preset to start from.")
+@click.option(
+    "--preset",
+    default="paper",
+    show_default=True,
+    callback=read_preset,
+    metavar="P",
+    help="Preset to start from.",
+)
 @force_option
 @common_options
 @click.pass_context
-def new(ctx: click.Context, path: Path, preset: str, force: bool) -> None:
+def new(ctx: click.Context, path: Path, preset: Layers, force: bool) -> None:
     """Write a configuration to start from, with a comment on every option.
 
     FILE is the file to write, such as my.toml; - is standard output. Every option is commented out and has
-    its value in the preset.
+    its value in the preset. If the preset is a pipe, which no file can extend, all options are set.
     """
-    text = starter(load_config(preset, plugins=plugins_of(ctx)), preset)
+    resolved = complete_config(preset, (), plugins_of(ctx))
+    text = starter(resolved, preset.source) if _can_be_extended(preset) else commented(resolved)
     try:
         data = text.encode()
     except UnicodeEncodeError as error:
-        raise InputError("its name is not UTF-8 text, as TOML requires; rename it", source=preset) from error
+        raise InputError(
+            "its name is not UTF-8 text, as TOML requires; rename it", source=preset.source
+        ) from error
     write_file(path, data, force=force, inputs=files_of_settings(ctx, preset))
     if path != STDOUT:
         click.echo(f"To run it: {command(ctx, 'run', path)}", err=True)
+
+
+def _can_be_extended(preset: Layers) -> bool:
+    return preset.source in preset_names() or is_file(Path(preset.source))

@@ -20,8 +20,9 @@ from evoframe.errors import InputError
 from evoframe.messages import quantity
 
 if TYPE_CHECKING:
-    from evoframe.config import Layer
+    from evoframe.config import Layer, Layers
     from evoframe.contract import Design, RunConfig, Score
+    from evoframe.record import Run
     from evoframe.registry import Plugins
 
 __all__ = [
@@ -37,10 +38,12 @@ __all__ = [
     "plugin_options",
     "plugins_of",
     "preset_option",
+    "read_preset",
     "scored",
     "set_option",
     "span",
     "warn_overlooked",
+    "warn_unreproduced",
     "workers_option",
 ]
 
@@ -169,6 +172,15 @@ def warn_overlooked(
         click.echo(f"Warning: {source}: the objective '{config.objective.name}' {found}", err=True)
 
 
+def warn_unreproduced(ctx: click.Context, run: Run, config: RunConfig, then: float, now: Score) -> None:
+    """Warn if the champion of a run does not have its score any more, because the bit generation changed."""
+    from evoframe.record import changed_scoring
+
+    changes = changed_scoring(run, config)
+    if changes and now.value != then and not is_quiet(ctx):
+        click.echo(f"Warning: {run.directory}: scored {then!r} in the run; {changes}", err=True)
+
+
 def is_quiet(ctx: click.Context) -> bool:
     """Return whether only the requested output is printed (``-q``)."""
     return _common(ctx).verbosity < 0
@@ -207,6 +219,13 @@ def _complete_preset(_: click.Context, __: click.Parameter, incomplete: str) -> 
     return [*presets, CompletionItem(incomplete, type="file")]
 
 
+def read_preset(_: click.Context, __: click.Parameter, preset: str | None) -> Layers | None:
+    """Return the settings of a preset or TOML file, read once: it may be a pipe."""
+    from evoframe.config import read_layers
+
+    return None if preset is None else read_layers(preset)
+
+
 def configuration_argument(function: F) -> F:
     """Add the argument for a preset or a configuration file."""
     return click.argument(
@@ -215,9 +234,10 @@ def configuration_argument(function: F) -> F:
 
 
 def preset_option(function: F) -> F:
-    """Add ``--preset P`` to a command that takes files."""
+    """Add ``--preset P`` to a command that takes files, passed on as its layers of settings."""
     return click.option(
         "--preset",
+        callback=read_preset,
         metavar="P",
         shell_complete=_complete_preset,
         help="Preset (or TOML file) for settings that the file does not contain, and for the objective. With "

@@ -10,6 +10,7 @@ from evoframe.cli.context import common_options, plugins_of, preset_option, set_
 from evoframe.cli.sources import RUN_OR_FILE, file_options, file_options_of, files_of, print_notes
 from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, write_file
+from evoframe.config import Layers
 from evoframe.designs import export_job, read_job
 
 __all__ = ["export"]
@@ -50,7 +51,7 @@ def export(
     format_: str,
     out: Path | None,
     force: bool,
-    preset: str | None,
+    preset: Layers | None,
     overrides: tuple[str, ...],
 ) -> None:
     """Write a design and its settings in the file format of another program.

@@ -8,7 +8,7 @@ import signal
 import click
 from rich.table import Table
 
-from evoframe.cli.context import command, is_quiet, output, scored, warn_overlooked
+from evoframe.cli.context import command, is_quiet, output, scored, warn_overlooked, warn_unreproduced
 from evoframe.cli.progress import Progress
 from evoframe.cli.signals import ended_by_signal, exit_code, stop_on_signals
 from evoframe.cli.streams import echo
@@ -63,11 +63,13 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
     if quiet:
         return
     if verification is not None:
-        console, design = output(), run.champion().design
+        console, champion = output(), run.champion()
+        design, unchanged = champion.design, verification.unchanged
         console.print()
         console.print(verification_table(verification))
         console.print(verdict(verification, config, design), soft_wrap=True)
-        warn_overlooked(ctx, directory, config, [design], [verification.unchanged])
+        warn_overlooked(ctx, directory, config, [design], [unchanged])
+        warn_unreproduced(ctx, run, config, champion.score, unchanged)
     click.echo(
         f"\nNext, figures and a page that shows the champion moving:\n  {command(ctx, 'report', directory)}",
         err=True,

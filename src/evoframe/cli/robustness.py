@@ -29,7 +29,7 @@ from evoframe.cli.context import (
 from evoframe.cli.progress import bar_columns
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, file_options_of, print_notes
 from evoframe.cli.streams import echo
-from evoframe.config import Layer
+from evoframe.config import Layer, Layers
 from evoframe.messages import unit_factor, unit_name
 from evoframe.robustness import (
     Candidates,
@@ -96,7 +96,7 @@ def robustness(
     force: bool,
     as_json: bool,
     correction: Correction,
-    preset: str | None,
+    preset: Layers | None,
     overrides: tuple[str, ...],
     workers: list[Layer],
 ) -> None:

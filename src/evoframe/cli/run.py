@@ -61,5 +61,5 @@ def run(
     base = read_configuration(ctx, source)
     extra = [] if seed is None else [layer_of(f"--seed {seed}", "run.seed", seed)]
     plugins = plugins_of(ctx)
-    config = complete_config(base, source, [*overrides, *extra, *workers], plugins)
+    config = complete_config(base, [*overrides, *extra, *workers], plugins)
     play(ctx, prepare(config, plugins, out))

@@ -20,12 +20,13 @@ from evoframe.cli.context import (
     set_option,
     span,
     warn_overlooked,
+    warn_unreproduced,
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, files_of, read_jobs
 from evoframe.cli.streams import echo
 from evoframe.cli.writing import STDOUT, files_of_settings, force_option, refuse_inputs, write_file
-from evoframe.config import Layer
+from evoframe.config import Layer, Layers
 from evoframe.contract import Score, unit_of
 from evoframe.designs import Job, naming, simulate_job, trace_of
 from evoframe.errors import InputError
@@ -67,7 +68,7 @@ Examples:
 def simulate(
     ctx: click.Context,
     files: tuple[Path, ...],
-    preset: str | None,
+    preset: Layers | None,
     overrides: tuple[str, ...],
     as_json: bool,
     trace: Path | None,
@@ -116,6 +117,8 @@ def simulate(
                 echo(f"{job.path} has no score: objective '{job.config.objective.name}': {job.unscored}")
     for job, scores in scored_jobs:
         warn_overlooked(ctx, job.path, job.config, job.designs, scores)
+        if job.run is not None and job.score is not None:
+            warn_unreproduced(ctx, job.run, job.config, job.score, scores[0])
 
 
 @attrs.frozen

@@ -140,7 +140,7 @@ def files_of(ctx: click.Context, paths: Iterable[Path]) -> Iterator[Path]:
 def read_jobs(
     ctx: click.Context,
     paths: Iterable[Path],
-    preset: str | None,
+    preset: Layers | None,
     overrides: Sequence[str | Layer],
     *,
     scored: bool = True,

@@ -17,11 +17,12 @@ from evoframe.cli.context import (
     set_option,
     span,
     warn_overlooked,
+    warn_unreproduced,
     workers_option,
 )
 from evoframe.cli.sources import RUN_STUDY_OR_FILE, file_options, read_jobs
 from evoframe.cli.streams import echo
-from evoframe.config import Layer
+from evoframe.config import Layer, Layers
 from evoframe.designs import Job, keep_of_job, verdict, verify_job
 from evoframe.messages import quantity, unit_name
 from evoframe.record import Finding, Verification
@@ -48,7 +49,7 @@ Examples:
 def verify(
     ctx: click.Context,
     sources: tuple[Path, ...],
-    preset: str | None,
+    preset: Layers | None,
     overrides: tuple[str, ...],
     as_json: bool,
     workers: list[Layer],
@@ -72,6 +73,8 @@ def verify(
     for job, verifications in found:
         unchanged = [each.unchanged for each in verifications]
         warn_overlooked(ctx, job.path, job.config, job.designs, unchanged)
+        if job.run is not None and job.score is not None:
+            warn_unreproduced(ctx, job.run, job.config, job.score, unchanged[0])
     for job, verifications in found:  # after printing, which needs no writable directory
         keep_of_job(job, verifications)
 

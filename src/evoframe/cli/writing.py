@@ -12,7 +12,7 @@ import click
 
 from evoframe.cli.context import modules_of
 from evoframe.cli.streams import echo, lend_descriptor
-from evoframe.config import read_layers
+from evoframe.config import Layers
 from evoframe.errors import InputError, RunError
 from evoframe.files import write_atomically
 
@@ -28,15 +28,15 @@ def force_option(function: F) -> F:
     return click.option("--force", is_flag=True, help="Overwrite a file with different content.")(function)
 
 
-def files_of_settings(ctx: click.Context, preset: str | None) -> Iterator[Path]:
+def files_of_settings(ctx: click.Context, preset: Layers | None) -> Iterator[Path]:
     """Yield the files from which a command takes its settings and local plugins.
 
     Args:
         ctx: The context of the command.
-        preset: The name of a preset or the path of a TOML file, which may extend others; ``None`` for none.
+        preset: The settings of a preset or TOML file, which may extend others; ``None`` for none.
     """
     if preset is not None:
-        yield from (Path(layer.origin) for layer in read_layers(preset).layers)
+        yield from (Path(layer.origin) for layer in preset.layers)
     for module in modules_of(ctx):
         file = module if module.endswith(".py") else getattr(sys.modules.get(module), "__file__", None)
         if file is not None:

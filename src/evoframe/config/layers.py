@@ -52,10 +52,12 @@ class Layers:
     Attributes:
         layers: The settings.
         local_plugins: Names of the local plugins (``-p``) with which a run of these settings was started.
+        source: Name of the preset, or path of the file, from which they were read; empty for others.
     """
 
     layers: tuple[Layer, ...]
     local_plugins: tuple[str, ...] = ()
+    source: str = ""
 
     def merged(self) -> Tree:
         """Return the merged tree of all layers."""
@@ -114,7 +116,7 @@ def read_layers(source: str | Path, overrides: Iterable[str | Layer] = ()) -> La
     Raises:
         ConfigurationError: A file or an override cannot be read.
     """
-    return Layers(()).under(_chain(str(source), Path(), ())).under(overrides)
+    return Layers((), source=str(source)).under(_chain(str(source), Path(), ())).under(overrides)
 
 
 def layers_in(tables: Mapping[str, Any], origin: str) -> Layers:
@@ -122,10 +124,10 @@ def layers_in(tables: Mapping[str, Any], origin: str) -> Layers:
 
     Args:
         tables: Tables of a run's ``config.toml``.
-        origin: Name of the source in errors.
+        origin: Path of that file.
     """
     own = {key: value for key, value in tables.items() if key not in ("extends", "provenance")}
-    return Layers((), _local_plugins(tables)).under([Layer(origin, own)])
+    return Layers((), _local_plugins(tables), origin).under([Layer(origin, own)])
 
 
 def _local_plugins(tables: Mapping[str, Any]) -> tuple[str, ...]:

@@ -54,19 +54,17 @@ def load_config(
     """
     if not isinstance(source, str | Path):
         raise TypeError(f"expected the name of a preset or the path of a file, found {type(source).__name__}")
-    return complete_config(read_layers(source), source, overrides, plugins or discover())
+    return complete_config(read_layers(source), overrides, plugins or discover())
 
 
-def complete_config(
-    base: Layers, source: str | Path, overrides: Iterable[str | Layer], plugins: Plugins
-) -> RunConfig:
-    """Resolve the layers that :func:`read_layers` returned for *source*, as by :func:`load_config`.
+def complete_config(base: Layers, overrides: Iterable[str | Layer], plugins: Plugins) -> RunConfig:
+    """Resolve the layers that :func:`read_layers` returned for a source, as by :func:`load_config`.
 
     Raises:
         ConfigurationError: The configuration is invalid; lists all faults, each with its file and key.
     """
     layers = base.under(overrides)
-    label = label_of(source, layers.layers[len(base.layers) :])
+    label = label_of(base.source, layers.layers[len(base.layers) :])
     return resolve_layers(layers, label, plugins)
 
 
@@ -98,26 +96,26 @@ def resolve_layers(layers: Layers, label: str, plugins: Plugins, *, scored: bool
 
 
 def named_simulator(
-    source: str | Path, overrides: Sequence[str | Layer], plugins: Plugins
+    base: Layers, overrides: Sequence[str | Layer], plugins: Plugins
 ) -> Chosen[Simulator] | None:
     """Return the simulator that a configuration names, for reading the settings that a file contains.
 
-    If the preset alone gives a valid simulator, overrides of its options are ignored, since they may be valid
+    If *base* alone gives a valid simulator, overrides of its options are ignored, since they may be valid
     only together with the settings of the file.
 
     Args:
-        source: Name of a preset, or path of a TOML file.
+        base: The settings of a preset or TOML file.
         overrides: As for :func:`load_config`.
         plugins: The plugins to choose from.
 
     Returns:
         The simulator; ``None`` if there are faults, which :func:`load_config` reports.
     """
-    table = read_layers(source, overrides).merged().get("simulator")
+    table = base.under(overrides).merged().get("simulator")
     if not isinstance(table, Mapping) or "name" not in table:
         return None
     alone = layer_of("", "simulator", {"name": table["name"]})
-    found = (resolve_simulator(read_layers(source, given), plugins) for given in ([alone], overrides))
+    found = (resolve_simulator(base.under(given), plugins) for given in ([alone], overrides))
     return next(filter(None, found), None)
 
 

@@ -16,6 +16,7 @@ from evoframe.contract.config import (
 )
 from evoframe.contract.drawings import Geometry, GeometryPart, NetworkGraph, NetworkLink
 from evoframe.contract.optional import (
+    SupportsBitGeneration,
     SupportsDialects,
     SupportsDuration,
     SupportsExemptions,
@@ -34,6 +35,7 @@ from evoframe.contract.optional import (
     SupportsVariants,
     SupportsWindow,
     Variant,
+    bit_generation_of,
     unit_of,
     window_of,
 )
@@ -108,6 +110,7 @@ __all__ = [
     "Scores",
     "Simulator",
     "Source",
+    "SupportsBitGeneration",
     "SupportsDialects",
     "SupportsDuration",
     "SupportsExemptions",
@@ -128,6 +131,7 @@ __all__ = [
     "Turn",
     "Variant",
     "Workload",
+    "bit_generation_of",
     "blaming",
     "deciding",
     "is_role",

@@ -20,6 +20,7 @@ from evoframe.contract.protocols import Aggregator, Encoder, Evolver, Objective,
 from evoframe.contract.values import Design, Export, FileContents, FileOptions, Record
 
 __all__ = [
+    "SupportsBitGeneration",
     "SupportsDialects",
     "SupportsDuration",
     "SupportsExemptions",
@@ -38,6 +39,7 @@ __all__ = [
     "SupportsVariants",
     "SupportsWindow",
     "Variant",
+    "bit_generation_of",
     "unit_of",
     "window_of",
 ]
@@ -49,6 +51,22 @@ class SupportsProvenance(Protocol):
 
     def provenance(self) -> Mapping[str, str]:
         """Return names and versions, such as those of libraries, for ``[provenance.libraries]``."""
+
+
+@runtime_checkable
+class SupportsBitGeneration(Protocol):
+    """A component that states the generation of its results; of any kind but an executor.
+
+    A run records the number. With another one it is resumed only if the user allows it, and its scores need
+    not be reproduced.
+    """
+
+    @property
+    def bit_generation(self) -> int:
+        """Number to be raised by 1 with every change of a bit of the results for equal arguments.
+
+        The first results have the number 1, which is also that of a component that states none.
+        """
 
 
 @runtime_checkable
@@ -279,3 +297,8 @@ def window_of(objective: Objective, times: NDArray[np.float64]) -> tuple[float, 
 def unit_of(objective: Objective) -> str:
     """Return the unit of an objective's scores; empty if it states none."""
     return str(objective.unit) if isinstance(objective, SupportsUnit) else ""
+
+
+def bit_generation_of(component: Any) -> int:
+    """Return the generation of a component's results; 1 if it states none."""
+    return component.bit_generation if isinstance(component, SupportsBitGeneration) else 1

@@ -74,7 +74,7 @@ class Job:
 
 def read_job(  # noqa: PLR0913 - the choices of a user
     source: Path | Run,
-    preset: str | None,
+    preset: Layers | None,
     overrides: Overrides,
     plugins: Plugins,
     *,
@@ -94,7 +94,7 @@ def read_job(  # noqa: PLR0913 - the choices of a user
     Args:
         source: A run or its directory, for its champion; a ``champion.json``; or a file in a format that
             the simulator reads.
-        preset: Name of a preset, or path of a TOML file.
+        preset: The settings of a preset or TOML file.
         overrides: ``key=value``, or layers, as for :func:`~evoframe.load_config`.
         plugins: The available plugins.
         scored: Whether the designs must be scored. If not, simulations may lack the samples that the
@@ -129,7 +129,7 @@ def naming(path: Path) -> Iterator[None]:
 class _Reader:
     """Reader of one source; the fields are the arguments of :func:`read_job`."""
 
-    preset: str | None
+    preset: Layers | None
     overrides: Overrides
     plugins: Plugins
     scored: bool
@@ -138,37 +138,40 @@ class _Reader:
     def of_run(self, run: Run) -> Job:
         self._refuse_options(run.directory)
         champion, path = run.champion(), run.directory
-        own = read_layers(self.preset) if self.preset else layers_in(run.config, str(path / CONFIG_FILE))
-        job = self._job(path, own, CONFIG_FILE, [(str(path), champion.design)])
+        own = self.preset or layers_in(run.config, str(path / CONFIG_FILE))
+        job = self._job(path, own, [(str(path), champion.design)])
         return attrs.evolve(_checked(job), run=run, score=self._score(champion.score, own))
 
     def of_champion(self, path: Path) -> Job:
         self._refuse_options(path)
         champion = read_champion(path)
-        own = read_layers(self.preset or DEFAULT_PRESET)
+        own = self._base()
         if self.preset is None:
             own = own.under([Layer(str(path), champion.simulation)])
-        job = self._job(path, own, DEFAULT_PRESET, [(path.name, champion.design)])
+        job = self._job(path, own, [(path.name, champion.design)])
         return attrs.evolve(_checked(job), score=self._score(champion.score, own))
 
     def of_file(self, path: Path) -> Job:
-        source = self.preset or DEFAULT_PRESET
-        settings, contents = self._contents(path, source)
-        own = read_layers(source).under(settings)
+        base = self._base()
+        settings, contents = self._contents(path, base)
+        own = base.under(settings)
         chosen = resolve_simulator(own.under(self.overrides), self.plugins)
         if chosen is None or not isinstance(chosen.component, SupportsReading):
-            config = self._config(own, DEFAULT_PRESET)  # faults of the settings come first
+            config = self._config(own)  # faults of the settings come first
             problem = f"'{config.simulator.name}' cannot read files with designs"
             raise ConfigurationError(problem, source=path, key="simulator")
         labelled = contents.designs if contents else chosen.component.read(path)
         if settings and self.preset is None and not _names_objective(self.overrides):
             own = own.under(_suggested(path, chosen.component, [design for _, design in labelled]))
-        job = self._job(path, own, DEFAULT_PRESET, labelled)
+        job = self._job(path, own, labelled)
         return attrs.evolve(job, dialect=contents.dialect, notes=contents.notes) if contents else job
 
-    def _contents(self, path: Path, source: str) -> tuple[list[Layer], FileContents | None]:
+    def _base(self) -> Layers:
+        return self.preset or read_layers(DEFAULT_PRESET)
+
+    def _contents(self, path: Path, base: Layers) -> tuple[list[Layer], FileContents | None]:
         """Return the settings in a file as a layer, if it has any, and its contents, if it has dialects."""
-        simulator = named_simulator(source, self.overrides, self.plugins)
+        simulator = named_simulator(base, self.overrides, self.plugins)
         component = None if simulator is None else simulator.component
         settings, contents = None, None
         if isinstance(component, SupportsDialects):
@@ -194,14 +197,14 @@ class _Reader:
                 problem = f"{path} is read in one way only; {name} is for files of other programs"
                 raise ConfigurationError(problem, source=name)
 
-    def _job(self, path: Path, own: Layers, base: str, labelled: Sequence[tuple[str, Design]]) -> Job:
-        config = self._config(own, base)
+    def _job(self, path: Path, own: Layers, labelled: Sequence[tuple[str, Design]]) -> Job:
+        config = self._config(own)
         labels, designs = zip(*labelled, strict=True)
         return Job(path, config, labels, designs, unscored="" if self.scored else _unscored(config))
 
-    def _config(self, own: Layers, base: str) -> RunConfig:
-        label = Path(self.preset or base).stem
-        return resolve_layers(own.under(self.overrides), label, self.plugins, scored=self.scored)
+    def _config(self, own: Layers) -> RunConfig:
+        layers, label = own.under(self.overrides), Path(own.source).stem
+        return resolve_layers(layers, label, self.plugins, scored=self.scored)
 
     def _score(self, score: float, own: Layers) -> float | None:
         """Return the score of a champion in its run, if it is simulated and scored as there."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from evoframe.config import layers_of
+from evoframe.config import layers_of, read_layers
 from evoframe.contract import (
     Design,
     ExecutorRun,
@@ -59,7 +59,8 @@ def verify(
     """
     overrides = layers_of(settings, {"executor.workers": workers})
     named = source if isinstance(source, Run) else Path(source)
-    job = read_job(named, preset, overrides, plugins or discover(), options=options)
+    base = None if preset is None else read_layers(preset)
+    job = read_job(named, base, overrides, plugins or discover(), options=options)
     verifications = verify_job(job)
     keep_of_job(job, verifications)
     return verifications

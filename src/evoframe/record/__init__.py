@@ -3,7 +3,14 @@
 from evoframe.record.champion import Champion, design_from_json, read_champion
 from evoframe.record.checksums import CHAINED, SINGLE
 from evoframe.record.layout import CHAMPION_FILE, CONFIG_FILE, RECORD_FILES
-from evoframe.record.provenance import changed_provenance, provenance_of
+from evoframe.record.provenance import (
+    bit_generations_of,
+    changed_generations,
+    changed_provenance,
+    changed_scoring,
+    provenance_of,
+    recorded_generations,
+)
 from evoframe.record.run import Report, Run, load_run, open_run, open_unchecked
 from evoframe.record.store import Store
 from evoframe.record.verification import UNCHANGED, Finding, Verification, keep_verification
@@ -21,7 +28,10 @@ __all__ = [
     "Run",
     "Store",
     "Verification",
+    "bit_generations_of",
+    "changed_generations",
     "changed_provenance",
+    "changed_scoring",
     "design_from_json",
     "keep_verification",
     "load_run",
@@ -29,4 +39,5 @@ __all__ = [
     "open_unchecked",
     "provenance_of",
     "read_champion",
+    "recorded_generations",
 ]

@@ -8,7 +8,7 @@ from typing import Any
 
 import attrs
 
-from evoframe.config import layers_of
+from evoframe.config import layers_of, read_layers
 from evoframe.contract import Design, FileOptions, Score, SupportsRandomControllers, unit_of
 from evoframe.documents import as_read
 from evoframe.errors import ConfigurationError
@@ -62,8 +62,9 @@ def measure_robustness(  # noqa: PLR0913 - the options of the command
     """
     paths = [source.directory if isinstance(source, Run) else Path(source) for source in sources]
     overrides = layers_of(settings, {"executor.workers": workers})
+    base = None if preset is None else read_layers(preset)
     candidates = read_candidates(
-        paths, preset, overrides, plugins or discover(), published=published, options=options
+        paths, base, overrides, plugins or discover(), published=published, options=options
     )
     return measure(candidates, setting_of(candidates, seed, controllers))
 

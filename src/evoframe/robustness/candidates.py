@@ -7,7 +7,7 @@ from pathlib import Path
 
 import attrs
 
-from evoframe.config import Layer, load_config
+from evoframe.config import Layer, Layers, complete_config, read_layers
 from evoframe.contract import FileOptions, RunConfig, SupportsPublished, SupportsRandomControllers, blaming
 from evoframe.designs import DEFAULT_PRESET, Job, read_job
 from evoframe.documents import differences
@@ -54,7 +54,7 @@ class Part:
 
 def read_candidates(  # noqa: PLR0913 - the choices of a user
     sources: Sequence[Path],
-    preset: str | None,
+    preset: Layers | None,
     overrides: Sequence[str | Layer],
     plugins: Plugins,
     *,
@@ -68,7 +68,7 @@ def read_candidates(  # noqa: PLR0913 - the choices of a user
 
     Args:
         sources: Directories of studies and runs, and files with designs.
-        preset: Name of a preset, or path of a TOML file, that simulates all bodies.
+        preset: The settings of a preset or TOML file, with which all bodies are simulated.
         overrides: Overrides for all bodies, as ``key=value`` or layers.
         plugins: The plugins to choose from.
         published: Whether to add the published bodies of the simulator. They are simulated like the first
@@ -86,7 +86,8 @@ def read_candidates(  # noqa: PLR0913 - the choices of a user
     parts = [part for path in sources for part in _some(reader, path)]
     notes = tuple((Path(part.named), part.notes) for part in parts if part.notes)
     if published:
-        config = parts[0].config if parts else _config(preset, overrides, plugins)
+        base = preset or read_layers(DEFAULT_PRESET)
+        config = parts[0].config if parts else complete_config(base, overrides, plugins)
         parts.append(_published(config))
     bodies = tuple(body for part in parts for body in part.bodies)
     if not bodies:
@@ -121,7 +122,7 @@ def champions(directory: Path, plugins: Plugins) -> Iterator[Part]:
 class _Reader:
     """Reader of one source after another; *studies* has the names of studies if there are several."""
 
-    preset: str | None
+    preset: Layers | None
     overrides: Sequence[str | Layer]
     plugins: Plugins
     studies: Mapping[Path, str]
@@ -181,10 +182,6 @@ def _of_job(job: Job) -> Part:
 def _text(path: Path) -> str:
     """Return a path as text for files; bytes that are not UTF-8 are replaced."""
     return encodable(str(path))
-
-
-def _config(preset: str | None, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
-    return load_config(preset or DEFAULT_PRESET, overrides=overrides, plugins=plugins)
 
 
 def _published(config: RunConfig) -> Part:

@@ -23,6 +23,7 @@ from evoframe.record import (
     SINGLE,
     Run,
     changed_provenance,
+    changed_scoring,
     open_unchecked,
     provenance_of,
 )
@@ -99,11 +100,12 @@ def _check_files(run: Run, plugins: Plugins) -> Iterator[Check]:
     yield _check("champion", lambda: _champion(run, config))
 
 
-def _check(subject: str, examine: Callable[[], str]) -> Check:
+def _check(subject: str, examine: Callable[[], str | Check]) -> Check:
     try:
-        return Check(subject, "ok", examine())
+        found = examine()
     except EvoframeError as error:
         return Check(subject, "problem", full_text(error))
+    return found if isinstance(found, Check) else Check(subject, "ok", found)
 
 
 @contextlib.contextmanager
@@ -227,15 +229,19 @@ def _state(run: Run, config: RunConfig) -> str:
     return "can be restored"
 
 
-def _champion(run: Run, config: RunConfig) -> str:
+def _champion(run: Run, config: RunConfig) -> str | Check:
+    """Simulate the champion again; only a score of the same bit generation must be reproduced."""
     if run.champion_document() is None:
         return "no pair has a score yet"
     champion, objective = run.champion(), config.objective.component
     [score] = score_designs(config.simulator.component, [champion.design], objective.record, objective)
-    if score.value != champion.score:
-        now = f"diverges at step {score.diverged_at}" if score.value is None else f"scores {score.value!r}"
-        raise InputError(f"scored {champion.score!r} in the run, but now {now}")
-    return f"scores {champion.score!r}, as in the run{_champion_file(run)}"
+    if score.value == champion.score:
+        return f"scores {champion.score!r}, as in the run{_champion_file(run)}"
+    now = f"diverges at step {score.diverged_at}" if score.value is None else f"scores {score.value!r}"
+    finding = f"scored {champion.score!r} in the run, but now {now}"
+    if changes := changed_scoring(run, config):
+        return Check("champion", "note", f"{finding}: {changes}{_champion_file(run)}")
+    raise InputError(finding)
 
 
 def _champion_file(run: Run) -> str:

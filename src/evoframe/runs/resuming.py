@@ -48,8 +48,8 @@ def resume(
     Args:
         directory: The run's directory.
         workers: Overrides ``executor.workers``; the result does not depend on it.
-        allow_different_versions: Resume even if versions or the machine changed since the start of the
-            run, and record the changes in the table ``resumes``.
+        allow_different_versions: Resume even if versions, bit generations or the machine changed since the
+            start of the run, and record the changes in the table ``resumes``.
         plugins: The available plugins; by default all installed plugins.
 
     Returns:
@@ -179,7 +179,7 @@ def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugin
 
 
 def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
-    """Return the changes of versions, local plugins and machine since the start of the run.
+    """Return the changes of versions, bit generations, local plugins and machine since the start of a run.
 
     Raises:
         ConfigurationError: There are changes, and they are not allowed.
@@ -187,8 +187,8 @@ def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
     changes = changed_provenance(run, config)
     if changes and not allowed:
         problem = (
-            "versions, local plugins or machine differ from those with which the run started, so its result "
-            "may differ"
+            "versions, bit generations, local plugins or machine differ from those with which the run "
+            "started, so its result may differ"
         )
         command = f"evoframe resume {run.directory} --allow-different-versions"
         todo = f"to continue anyway (this is recorded): {command}"

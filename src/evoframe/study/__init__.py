@@ -4,7 +4,7 @@ from evoframe.study.api import StudyPlan, StudyResult, plan_study, run_study
 from evoframe.study.conduct import STUDY_FILE, Watcher, claim, survey
 from evoframe.study.directory import is_study, runs_in
 from evoframe.study.estimate import Estimate
-from evoframe.study.gathered import IMPORTED, TABLES, gather, imported_rows
+from evoframe.study.gathered import IMPORTED, TABLES, gather, imported_rows, mixed_generations
 from evoframe.study.names import called, headings, name_of, title_of
 from evoframe.study.plan import Cell, Planned, Study, describes_study, read_study, shown, study_names
 from evoframe.study.pool import End
@@ -34,6 +34,7 @@ __all__ = [
     "headings",
     "imported_rows",
     "is_study",
+    "mixed_generations",
     "name_of",
     "plan_study",
     "read_rows",

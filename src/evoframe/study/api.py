@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import heapq
+import logging
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from evoframe.config import layers_of
 from evoframe.registry import Plugins, discover
 from evoframe.study.conduct import Watcher, claim, execute, lock_tables, refuse_another, survey
 from evoframe.study.estimate import Estimate, estimate_cost
-from evoframe.study.gathered import gather, import_rows, imported_rows
+from evoframe.study.gathered import gather, import_rows, imported_rows, mixed_generations
 from evoframe.study.plan import Planned, Study, read_study
 from evoframe.study.pool import Pool
 from evoframe.study.progress import Status
@@ -23,6 +24,8 @@ from evoframe.study.worker import Order
 from evoframe.workers import available_cores
 
 __all__ = ["StudyPlan", "StudyResult", "plan_study", "run_study"]
+
+_log = logging.getLogger(__name__)
 
 
 @attrs.frozen
@@ -142,7 +145,9 @@ def run_study(  # noqa: PLR0913 - all but the first are keywords
         imported = (import_rows if paths else imported_rows)(study, directory, paths)
     statuses = survey(study, directory, imported, rows=True)
     found = StudyResult(study, directory, statuses, gather(statuses, imported))
-    todo = [*found.unverified, *found.unfinished(retry=retry)]
+    to_run = found.unfinished(retry=retry)
+    todo = [*found.unverified, *to_run]
+    _warn_of_generations(found, to_run)
     watcher.on_begin(study, todo, {run: row for run, row in found.rows.items() if statuses[run].is_complete})
     orders = {run: Order(run.directory, study.layers_of(run), study.label, modules) for run in todo}
     try:
@@ -197,9 +202,22 @@ def plan_study(  # noqa: PLR0913 - as run_study
     statuses = survey(study, directory, imported, rows=True)
     found = StudyResult(study, directory, statuses, gather(statuses, imported))
     to_run = tuple(found.unfinished(retry=retry))
+    _warn_of_generations(found, to_run)
     cores = max(1, min(workers or available_cores(), available_cores(), len(to_run)))
     seconds = {run: row.seconds for run, row in found.finished.items()}
     return StudyPlan(found, to_run, cores, estimate_cost(to_run, seconds))
+
+
+def _warn_of_generations(found: StudyResult, to_run: Iterable[Planned]) -> None:
+    """Warn if finished runs and those to run have results of different bit generations."""
+    mixed = mixed_generations(found.rows, to_run)
+    if mixed:
+        _log.warning(
+            "the runs in %s have results of different bit generations (%s); for a study of one generation, "
+            "choose another directory (out)",
+            found.directory,
+            "; ".join(mixed),
+        )
 
 
 def _open(

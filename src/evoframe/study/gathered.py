@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TypeAlias
 
 from evoframe.errors import InputError
-from evoframe.record import open_run
+from evoframe.record import bit_generations_of, open_run
 from evoframe.study.conduct import STUDY_FILE
 from evoframe.study.plan import Planned, Study, shown
 from evoframe.study.progress import Status, with_remedy
 from evoframe.study.rows import CURVES_FILE, ROWS_FILE, Row, digest, read_rows, row_of, write_rows
 
-__all__ = ["IMPORTED", "TABLES", "gather", "import_rows", "imported_rows"]
+__all__ = ["IMPORTED", "TABLES", "gather", "import_rows", "imported_rows", "mixed_generations"]
 
 _REPEATABLE = ("fitness", "score", "fittest_pair_score", "pairs", "champion")  # equal on every machine
 
@@ -67,14 +67,20 @@ def _joined(planned: Mapping[_Key, Planned], directory: Path, paths: Iterable[Pa
             _refuse_another(row, run, path)
             earlier = kept.get(_key(row), row)
             if differing := [name for name in _REPEATABLE if getattr(earlier, name) != getattr(row, name)]:
+                if earlier.bit_generations != row.bit_generations:
+                    differing.append("bit_generations")
                 raise InputError(
                     "contradicts the row imported before: "
-                    + "; ".join(f"{n} was {getattr(earlier, n)}, is {getattr(row, n)}" for n in differing),
+                    + "; ".join(f"{n} was {_shown(earlier, n)}, is {_shown(row, n)}" for n in differing),
                     source=path,
                     key=_named(row),
                 )
             kept[_key(row)] = earlier if earlier.fitness_curve else row  # the new row may have curves
     return list(kept.values())
+
+
+def _shown(row: Row, name: str) -> str:
+    return str(getattr(row, name)) or "1"  # the bit generation of all components
 
 
 def imported_rows(study: Study, directory: Path, more: Iterable[Path] = ()) -> dict[Planned, Row]:
@@ -136,6 +142,26 @@ def gather(statuses: Mapping[Planned, Status], imported: Mapping[Planned, Row]) 
             with with_remedy(), open_run(planned.directory) as run:
                 rows[planned] = row_of(planned, run)
     return rows
+
+
+def mixed_generations(rows: Mapping[Planned, Row], to_run: Iterable[Planned] = ()) -> list[str]:
+    """Return a line for each component whose results in a study have several bit generations.
+
+    Args:
+        rows: The rows of the finished runs.
+        to_run: Runs to execute now, with the present generations.
+    """
+    found: dict[str, set[int]] = {}
+    for planned in [*rows, *to_run]:
+        chosen, row = dict(planned.cell.config.components()), rows.get(planned)
+        for key, now in bit_generations_of(planned.cell.config).items():
+            number = now if row is None else row.bit_generation(key)
+            found.setdefault(f"{key} '{chosen[key].name}'", set()).add(number)
+    return [
+        f"{component}: {' and '.join(map(str, sorted(numbers)))}"
+        for component, numbers in found.items()
+        if len(numbers) > 1
+    ]
 
 
 def _refuse_another(row: Row, run: Planned, path: Path) -> None:

@@ -7,6 +7,7 @@ import hashlib
 import io
 import json
 import math
+import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,7 +16,7 @@ import attrs
 
 from evoframe.errors import InputError
 from evoframe.files import LARGEST_DOCUMENT, read_text, write_atomically
-from evoframe.record import CHAMPION_FILE, Run
+from evoframe.record import CHAMPION_FILE, Run, recorded_generations
 from evoframe.study.plan import Planned, shown
 
 __all__ = ["CURVES_FILE", "ROWS_FILE", "Row", "digest", "read_rows", "row_of", "score_curve", "write_rows"]
@@ -45,6 +46,8 @@ class Row:
         simulations: Number of pairs simulated; the others are repeats.
         seconds: Duration of all turns, s.
         champion: SHA-256 of champion.json.
+        bit_generations: Components that had another bit generation than 1 when the run started, as in
+            ``simulator=2``; separated by spaces.
         fitness_curve: Best fitness of any population, for each generation from 0.
         score_curve: Score of the best pair so far, for each generation from 0.
     """
@@ -61,8 +64,13 @@ class Row:
     simulations: int
     seconds: float
     champion: str
+    bit_generations: str = ""
     fitness_curve: tuple[float, ...] = ()
     score_curve: tuple[float, ...] = ()
+
+    def bit_generation(self, key: str) -> int:
+        """Return the bit generation of the component with this dotted key."""
+        return int(dict(part.split("=") for part in self.bit_generations.split()).get(key, 1))
 
 
 _LARGEST_COUNT = 2**53  # a float, in which tables are analyzed, holds all smaller ones exactly
@@ -82,6 +90,13 @@ def _count(text: str) -> int:
     return value
 
 
+def _generations(text: str) -> str:
+    for part in text.split():
+        if not re.fullmatch(r"[^=]+=[1-9][0-9]{0,8}", part):
+            raise ValueError(f"expected bit generations as in simulator=2, found {part[:30]}")
+    return text
+
+
 _COLUMNS: Mapping[str, Callable[[str], Any]] = {
     "run": int,
     "seed": int,
@@ -94,7 +109,10 @@ _COLUMNS: Mapping[str, Callable[[str], Any]] = {
     "simulations": _count,
     "seconds": _finite,
     "champion": str,
+    "bit_generations": _generations,
 }
+_ADDED_LATER = "bit_generations"  # only in tables of runs that have some
+_REQUIRED = tuple(name for name in _COLUMNS if name != _ADDED_LATER)
 
 
 def digest(planned: Planned) -> str:
@@ -128,9 +146,15 @@ def row_of(planned: Planned, run: Run) -> Row:
         simulations=sum(row["simulations"] for row in work),
         seconds=round(sum(row["seconds"] for row in work), 3),
         champion=_digest_of(run.directory / CHAMPION_FILE),
+        bit_generations=_generations_in(run, planned),
         fitness_curve=fitness,
         score_curve=score,
     )
+
+
+def _generations_in(run: Run, planned: Planned) -> str:
+    recorded, components = recorded_generations(run), dict(planned.cell.config.components())
+    return " ".join(f"{key}={recorded[key]}" for key in components if recorded.get(key, 1) != 1)
 
 
 def _digest_of(path: Path) -> str:
@@ -164,9 +188,10 @@ def write_rows(rows: Sequence[Row], path: Path) -> None:
         RunError: A file cannot be written.
     """
     keys = list(dict.fromkeys(key for row in rows for key in row.settings))
-    figures = [[getattr(row, name) for name in _COLUMNS] for row in rows]
+    columns = _COLUMNS if any(row.bit_generations for row in rows) else _REQUIRED
+    figures = [[getattr(row, name) for name in columns] for row in rows]
     table = [[*_settings(row, keys), *values] for row, values in zip(rows, figures, strict=True)]
-    write_atomically(path, _csv([*keys, *_COLUMNS], table))
+    write_atomically(path, _csv([*keys, *columns], table))
     length = max((len(row.fitness_curve) for row in rows), default=0)
     curves = [
         [*_settings(row, keys), row.run, name, *map(_short, curve), *[""] * (length - len(curve))]
@@ -209,10 +234,10 @@ def read_rows(path: Path) -> list[Row]:
     curves = path.with_name(CURVES_FILE)
     drawn = _curves(curves) if curves.is_file() else {}
     rows = []
-    for number, line in enumerate(_table(path, _COLUMNS), start=2):
+    for number, line in enumerate(_table(path, _REQUIRED), start=2):
         settings = {key: value for key, value in line.items() if key not in _COLUMNS}
         try:
-            figures = {name: kind(line[name]) for name, kind in _COLUMNS.items()}
+            figures = {name: kind(line[name]) for name, kind in _COLUMNS.items() if name in line}
         except ValueError as error:
             raise InputError(f"not a row of a study: {error}", source=path, key=f"line {number}") from error
         row = Row(settings, **figures)

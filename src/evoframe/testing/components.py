@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import attrs
 import pytest
 
+from evoframe.contract import SupportsBitGeneration
 from evoframe.documents import structure, unstructure
 
 __all__ = ["ComponentContract"]
@@ -63,6 +64,13 @@ class ComponentContract(Generic[C]):
         assert structure(options, type(self.component), ("component",)) == self.component, (
             f"a component created from the written options {options} differs from the original"
         )
+
+    def test_a_bit_generation_is_a_number_from_1(self) -> None:
+        """A component that states the generation of its results has a whole number of at least 1."""
+        if isinstance(self.component, SupportsBitGeneration):
+            number = self.component.bit_generation
+            assert type(number) is int, f"expected a whole number, found {number!r}"
+            assert number >= 1, f"expected a number >= 1, found {number}"
 
 
 def _options(component: Any) -> list[attrs.Attribute[Any]]:

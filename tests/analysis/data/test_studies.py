@@ -40,6 +40,22 @@ def test_an_unfinished_study_is_read_and_not_changed(
     assert list(last["fitness"]) == [row.fitness for row in data.rows]
 
 
+def test_bit_generations_are_compared_between_runs(
+    made: tuple[Study, Path, list[Planned]], toy_plugins: Plugins, tmp_path: Path
+) -> None:
+    study, directory, planned = made
+    there = tmp_path / "there"
+    claim(study, there)
+    shutil.copytree(directory, there, dirs_exist_ok=True)
+    assert load_study(there, plugins=toy_plugins).mixed == ()
+    config = there / planned[0].directory.relative_to(directory) / "config.toml"
+    changed = "[provenance]\nbit_generations = {aggregator = 2}\n"
+    config.write_text(config.read_text().replace("[provenance]\n", changed))
+    data = load_study(there, plugins=toy_plugins)
+    assert data.mixed == ("aggregator 'toy-mean': 1 and 2",)
+    assert list(data.frame["bit_generations"]) == ["aggregator=2", "", "", ""]
+
+
 def test_polars_accepts_the_tables(
     made: tuple[Study, Path, list[Planned]], toy_plugins: Plugins, tmp_path: Path
 ) -> None:

@@ -33,6 +33,7 @@ class Study:
     rows: tuple[int, ...]
     planned: int
     alike: bool
+    mixed: tuple[str, ...] = ()
 
 
 def test_an_indented_line_continues_the_sentence_before_it() -> None:
@@ -44,6 +45,14 @@ def test_an_indented_line_continues_the_sentence_before_it() -> None:
     assert finished.startswith("2 of 2 ")
     assert unlike.startswith(f"{finished} ")
     assert not any("\n" in text or "  " in text for text in (unfinished, finished, unlike))
+
+
+def test_bit_generations_that_are_mixed_are_named() -> None:
+    alike, mixed = (
+        Study((1, 2), 2, alike=True, mixed=names) for names in ((), ("vox: 1 and 2", "x: 1 and 3"))
+    )
+    assert written("lead.txt", data=mixed).startswith(written("lead.txt", data=alike))
+    assert "(vox: 1 and 2; x: 1 and 3)" in written("lead.txt", data=mixed)
 
 
 def test_a_missing_value_is_an_error() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from evoframe import Evolver, SupportsGraph, SupportsProvenance
+from evoframe import Evolver, SupportsBitGeneration, SupportsGraph, SupportsProvenance
 from evoframe_evolvers import Neat, RandomSearch, evoframe_evolvers
 
 
@@ -12,7 +12,7 @@ def test_they_are_registered_by_name() -> None:
     assert evoframe_evolvers() == {"neat": Neat, "random": RandomSearch}
 
 
-@pytest.mark.parametrize("capability", [SupportsGraph, SupportsProvenance])
+@pytest.mark.parametrize("capability", [SupportsBitGeneration, SupportsGraph, SupportsProvenance])
 @pytest.mark.parametrize("evolver", evoframe_evolvers().values())
 def test_each_has_the_capabilities(evolver: type[Evolver], capability: type) -> None:
     assert isinstance(evolver(), capability)

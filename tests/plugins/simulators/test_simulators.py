@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from evoframe import (
+    SupportsBitGeneration,
     SupportsDialects,
     SupportsDuration,
     SupportsExport,
@@ -27,6 +28,7 @@ def test_vox_is_offered_by_name() -> None:
 @pytest.mark.parametrize(
     "capability",
     [
+        SupportsBitGeneration,
         SupportsDialects,
         SupportsDuration,
         SupportsExport,

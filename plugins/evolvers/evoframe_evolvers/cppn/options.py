@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from importlib.metadata import version
-from typing import Any
+from typing import Any, ClassVar
 
 import attrs
 from attrs.validators import and_, deep_iterable, ge, instance_of, le
@@ -127,6 +127,11 @@ class GenomeOptions:
     enabled_mutate_rate: float = probability(0.5)
     bias: BiasOptions = attrs.field(factory=BiasOptions, validator=instance_of(BiasOptions))
     weight: WeightOptions = attrs.field(factory=WeightOptions, validator=instance_of(WeightOptions))
+
+    # Raise this number by hand with every change of a bit of a network's outputs (libcppn), or of the genomes
+    # that follow from a seed and the fitness, and name the change in CHANGELOG.md under "Changed bits". Runs
+    # without a number have generation 1.
+    bit_generation: ClassVar[int] = 1
 
     def provenance(self) -> dict[str, str]:
         """Return the version of neat-python, which creates and mutates the genomes."""

@@ -66,6 +66,10 @@ class Vox(VoxSettings):
     formats: ClassVar[tuple[str, ...]] = ("vxa", "npz")
     dialects: ClassVar[tuple[str, ...]] = DIALECTS
 
+    # Raise this number by hand with every change of a bit of a result, in libvox or in this package, and name
+    # the change in CHANGELOG.md under "Changed bits". Runs without a number have generation 1.
+    bit_generation: ClassVar[int] = 2
+
     def __attrs_post_init__(self) -> None:
         possible_clocks(self)  # raises if the solver rejects the combination
 

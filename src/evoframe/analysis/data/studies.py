@@ -23,6 +23,7 @@ from evoframe.study import (
     gather,
     headings,
     imported_rows,
+    mixed_generations,
     read_study,
     shown,
     survey,
@@ -53,6 +54,8 @@ class StudyData:
         values: Key of the grid -> text of a value in rows -> the value, if it is a number or a string.
         directory: Directory of the study.
         facts: Settings that a reader needs first: label -> values.
+        mixed: Components whose results have several bit generations, with these, as in
+            ``simulator 'vox': 1 and 2``.
     """
 
     label: str
@@ -66,6 +69,7 @@ class StudyData:
     values: Mapping[str, Mapping[str, Any]] = attrs.field(factory=dict, repr=False)
     directory: Path = Path()
     facts: Mapping[str, str] = attrs.field(factory=dict, repr=False)
+    mixed: tuple[str, ...] = ()
 
     @property
     def frame(self) -> pd.DataFrame:
@@ -184,4 +188,5 @@ def load_study(directory: str | Path, *, plugins: Plugins | None = None) -> Stud
         },
         directory=directory,
         facts=facts_of([cell.config.tables() for cell in study.cells], unit),
+        mixed=tuple(mixed_generations(rows)),
     )
