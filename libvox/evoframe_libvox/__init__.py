@@ -253,8 +253,9 @@ class Model:
         fixed: Clamped degrees of freedom of each cell as bits, ``uint8[X, Y, Z]`` (see ``FIX_ALL``).
         kernel: One of ``KERNELS``; by default that of the environment variable ``EVOFRAME_KERNEL``, or the
             fastest.
-        whole_body: Whether to make the last step even if it has no effect on any sample. This changes no bit
-            of the results.
+        whole_body: Whether to simulate the whole body for the whole duration, instead of what can affect the
+            samples. This changes no bit of the samples, but what cannot affect a sample does not diverge
+            otherwise.
 
     Attributes:
         kernel: Name of the kernel, for the provenance of results.

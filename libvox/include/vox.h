@@ -4,8 +4,8 @@
  * so any number of threads may use it at the same time. A call takes a batch of bodies and writes
  * into the caller's buffers. The library prints nothing, has no global state and trusts no input:
  * every call checks its arguments before simulating and returns a status. A body requires memory
- * for its bounding box: about 600 bytes per cell, 1000 if its materials differ, and more for
- * contacts. A model keeps the memory of up to eight bodies for later calls.
+ * for its bounding box: about 1000 bytes per cell, 1400 if its materials differ, and more for
+ * contacts. A model keeps up to eight bodies, and at most about 64 MiB, for later calls.
  *
  * Units: meter, second, kilogram, pascal, degree; phases in cycles. Arrays over cells have x
  * fastest, then y, then z, and a batch is body after body.
@@ -20,7 +20,7 @@
 
 /* Version of this library. The second number increases with every change of the interface or of a
  * bit of the results, the third with all other changes. */
-#define VOX_VERSION "0.2.0"
+#define VOX_VERSION "0.3.0"
 
 /* Maximum sizes of a model. */
 enum {
@@ -142,7 +142,8 @@ struct vox_settings {
      * by rounding */
     int32_t kernel;     /* 0: the fastest for this processor; else a number of
                            vox_kernel_name */
-    int32_t whole_body; /* 0: skip steps without effect on samples; changes no bit */
+    int32_t whole_body; /* 0: compute only what can affect the samples; else all steps of all
+                           voxels, which changes no bit of the samples, but see diverged_step */
     /* divergence */
     double largest_strain;   /* absolute, of a bond; 0 < . <= 1e9 */
     double largest_distance; /* of a voxel from its start, in longest edges of the canvas;
@@ -203,14 +204,18 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
  * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: the step resulted in
  *               a NaN or in a distance beyond largest_distance, or it started with a strain beyond
  *               largest_strain or with twice as many contact candidates as in a lattice without
- *               gaps. Such a body stops; the others are not affected.
+ *               gaps. Such a body stops; the others are not affected. What cannot affect a sample
+ *               is not computed and does not diverge, unless whole_body is set or the body is
+ *               `repeated`.
+ * repeated      [n_bodies] 1 if another list of contacts could have affected the samples, so that
+ *               the whole body was simulated again, else 0; NULL is allowed
  *
  * A call that fails leaves all buffers unchanged, unless memory runs out in the middle of a batch.
  *
  * From the step at which the motion of a body ends (falling_code), samples repeat its state.
  *
- * The results of a body do not depend on the other bodies in the batch, or on the requested samples
- * and tracks.
+ * The results of a body do not depend on the other bodies in the batch. Samples do not depend on the
+ * other samples and tracks that are requested, unless the body diverges.
  */
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples,
