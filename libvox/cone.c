@@ -162,5 +162,5 @@ double vox_cone_share(const struct body *body, int64_t steps)
         left += fmax(0.0, (double)steps - body->group_depth[group]);
         all += (double)steps;
     }
-    return all > 0.0 ? left / all : 1.0;
+    return all > 0.0 ? left / all : 0.0;
 }

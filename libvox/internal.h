@@ -450,6 +450,7 @@ bool vox_voxel_advance(struct body *body, int64_t slot);
 /* The reference kernel: bond.c and motion.c. */
 bool vox_scalar_bonds_apply(struct body *body, double per_second, double limit);
 bool vox_scalar_voxels_advance(struct body *body, double limit);
+void vox_scalar_phases_set(struct body *body);
 void vox_scalar_sizes_advance(struct body *body, double limit);
 
 /* kernels.c */
@@ -465,6 +466,8 @@ struct kernel {
     /* Advance the voxels up to the depth `limit` by one time step under their forces. Return false
      * if one of them diverges. */
     bool (*voxels_advance)(struct body *body, double limit);
+    /* Prepare for changed phases of the actuation. */
+    void (*phases_set)(struct body *body);
     /* Change the sizes of these voxels to those after this step. */
     void (*sizes_advance)(struct body *body, double limit);
 };

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "internal.h"
-#include "kernels/lanes.h"
 
 /* The arrays of the state, except sizes. */
 struct state {
@@ -100,11 +99,9 @@ void vox_body_actuate(struct body *body, const double *phase_cycles)
     struct voxels *v = &body->voxels;
     for (int64_t i = 0; i < body->census.n_voxels; i++) {
         const int64_t slot = body->slots[i];
-        if (v->amplitude[slot] == 0.0) continue;
-        v->phase[slot] = (double)(float)phase_cycles[body->cells[i]];
-        v->phase_sine[slot] = sine(TWO_PI * v->phase[slot]);
-        v->phase_cosine[slot] = cosine(TWO_PI * v->phase[slot]);
+        if (v->amplitude[slot] != 0.0) v->phase[slot] = (double)(float)phase_cycles[body->cells[i]];
     }
+    body->model->kernel->phases_set(body);
 }
 
 void vox_first_keep(struct body *body, double limit)

@@ -214,8 +214,8 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
  *
  * From the step at which the motion of a body ends (falling_code), samples repeat its state.
  *
- * The results of a body do not depend on the other bodies in the batch. Samples do not depend on the
- * other samples and tracks that are requested, unless the body diverges.
+ * The results of a body do not depend on the other bodies in the batch. Samples do not depend on
+ * the other samples and tracks that are requested, unless the body diverges.
  */
 enum vox_status vox_simulate(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                              const double *phase_cycles, int64_t n_samples,

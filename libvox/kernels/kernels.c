@@ -1,8 +1,12 @@
 /* The kernels, and their support by this processor. */
 #include "internal.h"
 
-static const struct kernel scalar_kernel = {"scalar", NULL, vox_scalar_bonds_apply,
-                                            vox_scalar_voxels_advance, vox_scalar_sizes_advance};
+static const struct kernel scalar_kernel = {"scalar",
+                                            NULL,
+                                            vox_scalar_bonds_apply,
+                                            vox_scalar_voxels_advance,
+                                            vox_scalar_phases_set,
+                                            vox_scalar_sizes_advance};
 
 static const struct kernel *const kernels[] = {
     &scalar_kernel,

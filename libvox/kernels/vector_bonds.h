@@ -169,8 +169,8 @@ IN_LOOP int64_t look(const struct voxels *v, const struct bonds *bonds, enum axi
     return sum_of(large);
 }
 
-/* The rotation of a direction onto +x, as in bond.c; its x is 0. The length times the cosine of half
- * the angle gives both its sine and its cosine with one division. */
+/* The rotation of a direction onto +x, as in bond.c; its x is 0. The length times the cosine of
+ * half the angle gives both its sine and its cosine with one division. */
 IN_LOOP struct quat onto_x(struct vec u, double length)
 {
     const double slope = SLOPE_OF_SMALL_TURN * fabs(u.x);
@@ -209,7 +209,7 @@ IN_LOOP int64_t straighten(const double *restrict depth, struct range range, dou
         sight->stretch[1][i] = choose(small, u.y, 0.0);
         sight->stretch[2][i] = choose(small, u.z, 0.0);
         far[i - vector] += (depth[i] <= limit) &
-                          ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
+                           ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
     }
     return sum_of(far);
 }

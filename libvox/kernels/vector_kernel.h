@@ -27,11 +27,11 @@ struct range {
     int64_t first, last; /* excluding `last`; both are equal if there are none */
 };
 
-/* A loop over the vectors of a range, and over the lanes of a vector, whose number WIDTH is a constant
- * of the instruction set. */
-#define FOR_LANES(i, range)                                                       \
+/* A loop over the vectors of a range, and over the lanes of a vector, whose number WIDTH is a
+ * constant of the instruction set. */
+#define FOR_LANES(i, range)                                                      \
     for (int64_t vector = (range).first; vector < (range).last; vector += WIDTH) \
-    NO_LANE_DEPENDS_ON_ANOTHER                                                    \
+        NO_LANE_DEPENDS_ON_ANOTHER                                               \
     for (int64_t i = vector; i < vector + WIDTH; i++)
 
 /* Return the range of the groups of a tile up to a depth. */
@@ -69,4 +69,9 @@ IN_LOOP struct range both(struct range one, struct range other)
 #include "vector_motion.h"
 
 #define VECTOR_KERNEL(name, usable) \
-    {name, usable, VECTOR(bonds_apply), VECTOR(voxels_advance), VECTOR(sizes_advance)}
+    {name,                          \
+     usable,                        \
+     VECTOR(bonds_apply),           \
+     VECTOR(voxels_advance),        \
+     VECTOR(phases_set),            \
+     VECTOR(sizes_advance)}

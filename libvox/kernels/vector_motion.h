@@ -167,6 +167,18 @@ static bool VECTOR(voxels_advance)(struct body *body, double limit)
     return fine && lost == 0;
 }
 
+/* The sine of a sum of time and phase follows from the sines and cosines of both. */
+static void VECTOR(phases_set)(struct body *body)
+{
+    const double *restrict phase = body->voxels.phase;
+    double *restrict phase_sine = body->voxels.phase_sine;
+    double *restrict phase_cosine = body->voxels.phase_cosine;
+    for (int64_t i = 0; i < body->n_tiles * TILE; i++) {
+        phase_sine[i] = sine(TWO_PI * phase[i]);
+        phase_cosine[i] = cosine(TWO_PI * phase[i]);
+    }
+}
+
 static void VECTOR(sizes_advance)(struct body *body, double limit)
 {
     const struct actuation actuation = vox_actuation_at(body->model, body->time);
