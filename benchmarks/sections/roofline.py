@@ -43,10 +43,11 @@ _CHORD = Work(10)  # arc_ratio: 8 of the power series, with a difference before 
 _ARC = Work(34, divisions=1, roots=2)  # arc_ratio of a bond that is turned far, in addition to the chord
 
 _LOOK = Work(3 + 28 + 2 + 1 + 8) + _TURN  # apart, quaternion product, rest, aside, limits; to the frame
-_STRAIGHTEN = Work(5 + 11 + 20, divisions=3, roots=2)  # length, onto_x, quaternion product
-# rest, turn of the upper end, speeds; forces of spring and damper, and their sum; twist, moments of both ends
-_PULL = Work(1 + 3 + 16 + 9 + 9 + 3 + 1 + 20 + 14) + _CHORD + _TURN + _TURN + _TURN
-_PULL_LARGE = Work(2 + 20) + _CHORD + _MATRIX  # turn of the lower end, turned_back
+_STRAIGHTEN = Work(5 + 12 + 20, divisions=1, roots=2)  # length, onto_x, quaternion product
+# stretch, turn of the upper end, sums of last turns; force, twist, moments of the lower and the upper end
+_PULL = Work(1 + 3 + 2 + 17 + 3 + 18 + 12) + _CHORD + _TURN + _TURN
+# turn of the lower end, sums of turns, turned_back; moment of the lower end
+_PULL_LARGE = Work(2 + 2 + 20 + 3) + _CHORD + _MATRIX + _TURN
 _ADD = Work(6)  # force and moment of an end, to those of the tile or of the voxels
 
 SMALL_FRAME = _LOOK + _PULL + _ADD + _ADD
@@ -62,18 +63,19 @@ _MOVE = Work(7 + 6 + 3 + 6 + 3 + 5 + 5)  # load, momentum, velocity, position, w
 _ROTATE = Work(9 + 3 + 28 + 8 + 7 + 4 + 6, divisions=1, roots=1)  # turn_tile, in the order of its lines
 _SIZE = Work(7)
 
-VOXEL = _MATRIX + _ADD + _MOVE + _ROTATE + _SIZE
-"""Work of a voxel's step: its frame and the sum of its forces as a lower end, and its motion."""
+VOXEL = _MATRIX + _TURN + Work(3) + _MOVE + _ROTATE + _SIZE
+"""Work of a voxel's step: its frame, the moment on it as a lower end, and its motion."""
 
 # Minimum number of doubles read and written in a step: each array once for all bonds, once for the motion.
-# A bond reads `there`, `small` and the eight of the last deformation, and writes all of them but `there`.
-_BOND_DOUBLES = (10 + 9) * 3  # per voxel, which has bonds along three axes
-_END_DOUBLES = 8 + 6 + 6  # position, orientation, size; force and torque, read and written
-_MOTION_DOUBLES = 32 + 20  # of move_tile, turn_tile and size_tile: read, written
+# A bond reads `depth`, `small` and the eight of the last deformation, and writes all of them but `depth`, and
+# force and moment on its upper end, which are read once more.
+_BOND_DOUBLES = (10 + 9 + 6 + 6) * 3  # per voxel, which has bonds along three axes
+_END_DOUBLES = 8 + 6  # position, orientation, size; force and torque, written
+_MOTION_DOUBLES = 32 + 14  # of move_tile, turn_tile and size_tile: read, written
 VOXEL_BYTES = 8 * (_BOND_DOUBLES + _END_DOUBLES + _MOTION_DOUBLES)
 """Memory traffic of a step of a voxel with its bonds, bytes."""
 
-ARRAYS = 3 * 10 + 32
+ARRAYS = 3 * 16 + 32
 """Number of arrays of doubles that the kernels use for a body."""
 
 _BATCH = 8
