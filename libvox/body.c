@@ -158,9 +158,9 @@ static void lay_out_cleared(struct body *body, struct arena *arena)
     struct voxels *v = &body->voxels;
     v->force = take_vecs(arena, n);
     v->torque = take_vecs(arena, n);
-    double **const constants[] = {&v->phase,    &v->phase_sine, &v->phase_cosine,
-                                  &v->amplitude, &v->mobility,   &v->drag_rate,
-                                  &v->weight,   &v->turnability, &v->spin_kept};
+    double **const constants[] = {&v->phase,     &v->phase_sine,  &v->phase_cosine,
+                                  &v->amplitude, &v->mobility,    &v->drag_rate,
+                                  &v->weight,    &v->turnability, &v->spin_kept};
     for (size_t i = 0; i < sizeof constants / sizeof *constants; i++)
         *constants[i] = take_numbers(arena, n);
     v->substance = take(arena, n, sizeof *v->substance);

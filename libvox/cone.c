@@ -1,12 +1,12 @@
-/* The cone of influence: the voxels and bonds whose motion can reach a sample in time. In one step, an
- * effect spreads along bonds and contacts by one voxel (docs/solver.md). */
+/* The cone of influence: the voxels and bonds whose motion can reach a sample in time. In one step,
+ * an effect spreads along bonds and contacts by one voxel (docs/solver.md). */
 #include <string.h>
 
 #include "internal.h"
 
 /* Steps across a pair of voxels that is near, but not listed: one more for each of these gaps
- * between them, in edges, which no voxel crosses in one step. Beyond LONGEST_PAIR, bonds lead across
- * the surface of a body without gaps. */
+ * between them, in edges, which no voxel crosses in one step. Beyond LONGEST_PAIR, bonds lead
+ * across the surface of a body without gaps. */
 static const double GAP = 0.15;
 
 /* ---- depths ---------------------------------------------------------------------------------- */
@@ -60,8 +60,8 @@ static bool spread_across(const struct body *body, struct ring *ring, struct pai
 static int32_t steps_across(const struct body *body, struct pair pair)
 {
     const vox_model *model = body->model;
-    const double touching = model->settings.collision_envelope * model->largest_size /
-                            model->settings.voxel_size;
+    const double touching =
+        model->settings.collision_envelope * model->largest_size / model->settings.voxel_size;
     const double gap = sqrt((double)start_distance2(body, pair)) - touching;
     return gap < GAP ? 1 : gap < (LONGEST_PAIR - 1) * GAP ? 1 + (int32_t)(gap / GAP) : LONGEST_PAIR;
 }

@@ -110,9 +110,9 @@ struct kernel;
 #define MOST_SPARES 8
 
 struct spares {
-    atomic_flag busy;                 /* a thread uses this struct */
+    atomic_flag busy; /* a thread uses this struct */
     int64_t n;
-    struct body *bodies[MOST_SPARES]; /* the one that has not been used for the longest time first */
+    struct body *bodies[MOST_SPARES]; /* the least recently used one first */
 };
 
 struct vox_model {
@@ -149,8 +149,8 @@ struct census {
 
 /* Arrays over the slots of a body: the cells of its box in the order of the model, followed by
  * padding slots, which are treated as empty cells. Empty slots contain finite numbers without
- * effect on results. No result depends on the order: voxels, bonds and contacts are summed up in the
- * order of cells, x fastest, then y, then z. */
+ * effect on results. No result depends on the order: voxels, bonds and contacts are summed up in
+ * the order of cells, x fastest, then y, then z. */
 struct vecs {
     double *x, *y, *z;
 };
@@ -231,9 +231,9 @@ struct bonds {
     double *lower_y, *lower_z;       /* rad, turn of the lower end */
     struct vecs upper;               /* rad, turn of the upper end */
     struct coupling_arrays coupling; /* of each bond, unless all are equal */
-    struct vecs pull, wrench;        /* N and N m, on the upper end, with the opposite sign; 0 without
-                                        a bond. Also before the first slot, by `step` slots. */
-    double *group_depth;             /* lowest of the bonds in a group of slots */
+    struct vecs pull, wrench; /* N and N m, on the upper end, with the opposite sign; 0 without
+                                 a bond. Also before the first slot, by `step` slots. */
+    double *group_depth;      /* lowest of the bonds in a group of slots */
 };
 
 /* `bonded` of a voxel with a bond on every side. */
@@ -280,7 +280,7 @@ struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
-    int64_t n_padded; /* slots with the padding after the box, which may contain upper ends of a tile */
+    int64_t n_padded; /* slots with the padding after the box, where a tile may have upper ends */
     int32_t (*coordinates)[3]; /* of each slot in the box */
     int64_t step[3];           /* slots between neighboring cells along each axis */
     int32_t *slots;            /* [n_voxels] slots of the voxels, in the order of cells */
@@ -305,9 +305,9 @@ struct body {
     size_t memory_size;
     uint8_t *material; /* [cells of the canvas] from which the body was built */
     bool complete;     /* whether it was */
-    double time;      /* s */
-    double top_speed; /* m/s, after the previous step */
-    double farthest;  /* m, largest distance of a voxel from its start so far */
+    double time;       /* s */
+    double top_speed;  /* m/s, after the previous step */
+    double farthest;   /* m, largest distance of a voxel from its start so far */
 };
 
 static inline const struct substance *substance_of_voxel(const struct body *body, int64_t slot)
@@ -409,7 +409,6 @@ bool vox_body_has(const struct body *body, const uint8_t *material);
 
 /* Free all unused bodies. */
 void vox_bodies_destroy(vox_model *model);
-
 
 /* bond.c */
 

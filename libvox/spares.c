@@ -6,6 +6,7 @@
 
 /* bytes, of all spares together; for larger bodies the time of an allocation is negligible */
 static const size_t MOST_SPARE_MEMORY = (size_t)1 << 26;
+
 static void body_destroy(struct body *body)
 {
     if (!body) return;

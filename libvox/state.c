@@ -1,5 +1,5 @@
-/* The state of a body at rest, and after its first step. In the first step all sizes are still those
- * at rest, so all controllers of a body have the same state after it, except the sizes. */
+/* The state of a body at rest, and after its first step. In the first step all sizes are still
+ * those at rest, so all controllers of a body have the same state after it, except the sizes. */
 #include <string.h>
 
 #include "internal.h"
@@ -15,7 +15,7 @@ static struct state state_of(const struct body *body)
     const struct voxels *v = &body->voxels;
     const struct bonds *x = &body->bonds[AXIS_X], *y = &body->bonds[AXIS_Y],
                        *z = &body->bonds[AXIS_Z];
-#define BOND(b)                                                                        \
+#define BOND(b)                                                                             \
     b->small, b->stretch.x, b->stretch.y, b->stretch.z, b->lower_y, b->lower_z, b->upper.x, \
         b->upper.y, b->upper.z
     return (struct state){{v->position.x, v->position.y, v->position.z, v->orientation.w,

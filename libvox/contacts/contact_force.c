@@ -1,7 +1,7 @@
 /* Self collision: forces between touching voxels (section 10). The engine has neither damping nor
  * friction. */
-#include "internal.h"
 #include "contacts/touch.h"
+#include "internal.h"
 
 static struct vec spin_rate(const struct voxels *v, int64_t slot)
 {

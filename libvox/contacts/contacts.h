@@ -92,8 +92,8 @@ struct watch {
     int64_t largest2;   /* square of the largest distance, edges */
     int64_t *begin;     /* [(largest2 + 1) * DEPTHS + 1] into `list` */
     struct pairs pairs; /* in this order */
-    uint8_t *lost;      /* [first.n] whether a pair listed at rest has been out of reach since then */
-    double top_speed;   /* m/s, of any voxel so far */
+    uint8_t *lost;    /* [first.n] whether a pair listed at rest has been out of reach since then */
+    double top_speed; /* m/s, of any voxel so far */
 };
 
 /* Number of depths that are distinguished by their order; all larger ones count as the last. */
@@ -106,8 +106,8 @@ struct contacts {
     int64_t most;  /* maximum number of pairs in the list */
     struct near_by near_by;
     struct pairs first; /* the list at rest */
-    struct pairs now; /* the current list */
-    double travelled; /* lattice edges, by the fastest voxel since the list was built */
+    struct pairs now;   /* the current list */
+    double travelled;   /* lattice edges, by the fastest voxel since the list was built */
     struct grid grid;
     struct watch watch;
 };

@@ -13,8 +13,8 @@ struct limits {
 /* contact_list.c */
 struct limits vox_contacts_limits(const vox_model *model);
 
-/* Return whether a pair is listed, given the size of its first voxel and the square of its distance;
- * pairs exactly at the original engine's reach are not. */
+/* Return whether a pair is listed, given the size of its first voxel and the square of its
+ * distance; pairs exactly at the original engine's reach are not. */
 IN_LOOP bool is_listed(const struct limits *limits, double size, double distance2)
 {
     if (distance2 >= limits->reach * limits->reach) return false;

@@ -2,8 +2,7 @@
 #include "internal.h"
 
 static const struct kernel scalar_kernel = {"scalar", NULL, vox_scalar_bonds_apply,
-                                            vox_scalar_voxels_advance,
-                                            vox_scalar_sizes_advance};
+                                            vox_scalar_voxels_advance, vox_scalar_sizes_advance};
 
 static const struct kernel *const kernels[] = {
     &scalar_kernel,

@@ -172,7 +172,7 @@ IN_LOOP int64_t straighten(const double *restrict depth, struct range range, dou
         sight->stretch[1][i] = choose(small, u.y, 0.0);
         sight->stretch[2][i] = choose(small, u.z, 0.0);
         far[i - group] += (depth[i] <= limit) &
-               ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
+                          ((turned <= COSINE_OF_SMALL_ROTATION) | (w <= COSINE_OF_SMALL_ROTATION));
     }
     return sum_of(far);
 }
@@ -391,8 +391,8 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
         } else {
             const struct law other = law_of(&c, &c.upper, span->per_second);
             const struct vec own = force_of(&other, &now, &last);
-            const struct vec moment = moment_of(&other, &now, &last,
-                                                load_of(other.twist, b.x, last.b.x), b, last.b);
+            const struct vec moment =
+                moment_of(&other, &now, &last, load_of(other.twist, b.x, last.b.x), b, last.b);
             put(force_upper, i, there, turn(&m, x_to_axis(axis, own)));
             put(moment_upper, i, there, turn(&m, x_to_axis(axis, moment)));
         }
@@ -410,21 +410,22 @@ IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupl
     const struct bonds *b = &body->bonds[axis];
     struct sight sight;
     if (look(v, b, axis, base, range, span->limit, frames, &sight) == 0)
-        return pull(v, b, coupling, axis, base, range, span, false, false, frames, &sight,
-                    loads) == 0;
+        return pull(v, b, coupling, axis, base, range, span, false, false, frames, &sight, loads) ==
+               0;
     if (straighten(b->depth + base, range, span->limit, &sight) == 0)
-        return pull(v, b, coupling, axis, base, range, span, true, false, frames, &sight,
-                    loads) == 0;
+        return pull(v, b, coupling, axis, base, range, span, true, false, frames, &sight, loads) ==
+               0;
     return pull(v, b, coupling, axis, base, range, span, true, true, frames, &sight, loads) == 0;
 }
 
-/* Set one component of the forces on the voxels of a tile: the forces on them as lower ends of bonds,
- * less the pulls on them as upper ends, which belong to this tile or to earlier ones. */
+/* Set one component of the forces on the voxels of a tile: the forces on them as lower ends of
+ * bonds, less the pulls on them as upper ends, which belong to this tile or to earlier ones. */
 IN_LOOP void collect(double *restrict total, const double *restrict lower, const double *along_x,
                      const double *along_y, const double *along_z)
 {
     NO_LANE_DEPENDS_ON_ANOTHER
-    for (int64_t i = 0; i < TILE; i++) total[i] = ((lower[i] - along_x[i]) - along_y[i]) - along_z[i];
+    for (int64_t i = 0; i < TILE; i++)
+        total[i] = ((lower[i] - along_x[i]) - along_y[i]) - along_z[i];
 }
 
 /* Set the forces and torques on the voxels of a tile to those of their bonds. */
@@ -434,8 +435,9 @@ IN_LOOP void unload(const struct body *body, int64_t base, struct range range,
     FOR_LANES(i, range)
     {
         const struct matrix m = frame_at(frames, i);
-        const struct vec own = turn(&m, (struct vec){loads->own_moment[0][i], loads->own_moment[1][i],
-                                                     loads->own_moment[2][i]});
+        const struct vec own =
+            turn(&m, (struct vec){loads->own_moment[0][i], loads->own_moment[1][i],
+                                  loads->own_moment[2][i]});
         loads->moment[0][i] = -(own.x + loads->moment[0][i]);
         loads->moment[1][i] = -(own.y + loads->moment[1][i]);
         loads->moment[2][i] = -(own.z + loads->moment[2][i]);

@@ -28,9 +28,9 @@ struct range {
 };
 
 /* A loop over the groups of a range, and over the lanes of a group, which are computed together. */
-#define FOR_LANES(i, range)                                               \
+#define FOR_LANES(i, range)                                                   \
     for (int64_t group = (range).first; group < (range).last; group += GROUP) \
-    NO_LANE_DEPENDS_ON_ANOTHER                                            \
+        NO_LANE_DEPENDS_ON_ANOTHER                                            \
     for (int64_t i = group; i < group + GROUP; i++)
 
 /* Return the range of the groups of a tile up to a depth. */
@@ -67,5 +67,5 @@ IN_LOOP struct range both(struct range one, struct range other)
 #include "vector_bonds.h"
 #include "vector_motion.h"
 
-#define VECTOR_KERNEL(name, usable) {name, usable, VECTOR(bonds_apply), VECTOR(voxels_advance), \
-                                    VECTOR(sizes_advance)}
+#define VECTOR_KERNEL(name, usable) \
+    {name, usable, VECTOR(bonds_apply), VECTOR(voxels_advance), VECTOR(sizes_advance)}

@@ -127,8 +127,7 @@ static bool advance_partly_held(struct body *body, double limit)
 {
     bool fine = true;
     for (int64_t i = 0; i < body->n_partly; i++)
-        if (body->depth[body->partly[i]] <= limit)
-            fine &= vox_voxel_advance(body, body->partly[i]);
+        if (body->depth[body->partly[i]] <= limit) fine &= vox_voxel_advance(body, body->partly[i]);
     return fine;
 }
 
