@@ -11,6 +11,7 @@ static void body_destroy(struct body *body)
 {
     if (!body) return;
     vox_contacts_destroy(&body->contacts);
+    vox_watch_destroy(&body->contacts.watch);
     vox_surface_destroy(&body->surface);
     free(body->memory);
     free(body->material);

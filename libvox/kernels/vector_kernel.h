@@ -48,10 +48,10 @@ IN_LOOP struct range range_of(const double *group_depth, int64_t base, double li
 /* Numbers of events in the lanes of a group; a sum over lanes within a loop would be slow. */
 typedef int64_t counts[GROUP];
 
-IN_LOOP int64_t sum_of(const counts counts)
+IN_LOOP int64_t sum_of(const counts numbers)
 {
     int64_t sum = 0;
-    for (int i = 0; i < GROUP; i++) sum += counts[i];
+    for (int i = 0; i < GROUP; i++) sum += numbers[i];
     return sum;
 }
 
