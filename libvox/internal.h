@@ -194,6 +194,7 @@ static inline void quat_put(struct quats a, int64_t i, struct quat q)
 #define ABSENT HUGE_VAL     /* of an empty slot, and of a voxel that is not free to move */
 #define WHOLE_BODY 1e300    /* limit of the depth that includes all voxels and bonds */
 #define LONGEST_PAIR 4      /* largest difference of the depths of two voxels that are near */
+#define SPACE 2 /* largest difference of the depths of neighboring cells, if voxels collide */
 
 /* Constants and state of the voxels. */
 struct voxels {

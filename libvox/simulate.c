@@ -196,18 +196,18 @@ static enum sources sources_of(const struct vox_tracks *tracks)
 }
 
 /* Return whether effects spread only along bonds and across pairs of voxels. */
-static bool has_cone(const vox_model *model)
+static bool has_cone(const struct body *body)
 {
-    const struct vox_settings *s = &model->settings;
+    const struct vox_settings *s = &body->model->settings;
     if (s->whole_body || s->fluid_drag > 0.0) return false;
-    return !s->self_collision || vox_watch_is_possible(model);
+    return !s->self_collision || vox_watch_is_possible(body);
 }
 
 /* Prepare a body for samples, and decide whether it is simulated as a whole. */
 static enum vox_status prepare(struct body *body, const struct samples *samples, bool *whole)
 {
     const vox_model *model = body->model;
-    *whole = !has_cone(model);
+    *whole = !has_cone(body);
     const enum sources sources = *whole ? SOURCE_ALL : sources_of(samples->tracks);
     if (body->sources != sources) {
         vox_cone_shape(body, sources);
