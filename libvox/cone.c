@@ -5,7 +5,7 @@
 #include "internal.h"
 
 /* Steps across a pair of voxels that is near, but not listed: one more for each of these gaps
- * between them, in edges, which no voxel crosses in a step. */
+ * between them, in edges, which no voxel crosses in a step; at most LONGEST_PAIR. */
 static const double GAP = 0.15;
 
 enum vox_status vox_cone_prepare(vox_model *model)
@@ -41,19 +41,28 @@ static void lower_to(const struct body *body, struct ring *ring, int64_t slot, i
     ring->slots[(ring->begin + ring->n++) % ring->size] = (int32_t)slot;
 }
 
-/* Spread depths along bonds; a voxel that cannot move passes nothing on. */
+/* Return the steps from a slot to its neighbor on a side: one along a bond, unless the voxel cannot
+ * move, or those through space. */
+static int32_t steps_along(const struct body *body, int64_t slot, int side)
+{
+    const bool leads = body->bonded[slot] >> side & 1 && body->voxels.fixed[slot] != VOX_FIX_ALL;
+    return leads ? 1 : SPACE;
+}
+
+/* Spread depths along bonds and, if voxels collide, through space. */
 static void spread(const struct body *body, struct ring *ring)
 {
+    const int32_t longest = body->model->settings.self_collision ? SPACE : 1;
     while (ring->n > 0) {
         const int64_t slot = ring->slots[ring->begin];
         ring->begin = (ring->begin + 1) % ring->size;
         ring->n--;
         ring->queued[slot] = 0;
-        if (body->voxels.fixed[slot] == VOX_FIX_ALL) continue;
         for (int side = 0; side < 6; side++) {
-            if (!(body->bonded[slot] >> side & 1)) continue;
-            const int64_t step = body->step[side / 2];
-            lower_to(body, ring, side % 2 ? slot + step : slot - step, body->depth[slot] + 1);
+            const int32_t steps = steps_along(body, slot, side);
+            if (steps > longest) continue;
+            const int64_t next = slot_beside(body, slot, (enum axis)(side / 2), side % 2);
+            if (next >= 0) lower_to(body, ring, next, body->depth[slot] + steps);
         }
     }
 }
@@ -100,7 +109,7 @@ static bool is_source(const struct body *body, int64_t slot, enum sources source
 static void find_depths(struct body *body, enum sources sources)
 {
     struct ring ring = {.slots = body->ring, .queued = body->queued, .size = body->n_slots};
-    for (int64_t i = 0; i < body->census.n_voxels; i++) body->depth[body->slots[i]] = UNREACHED;
+    for (int64_t slot = 0; slot < body->n_slots; slot++) body->depth[slot] = UNREACHED;
     for (int64_t i = 0; i < body->census.n_voxels; i++)
         if (is_source(body, body->slots[i], sources)) lower_to(body, &ring, body->slots[i], 0);
     spread(body, &ring);

@@ -112,8 +112,7 @@ struct kernel;
 struct spares {
     atomic_flag busy; /* a thread uses this struct */
     int64_t n;
-    struct body
-        *bodies[MOST_SPARES]; /* the one that has not been used for the longest time first */
+    struct body *bodies[MOST_SPARES]; /* the least recently used one first */
 };
 
 struct vox_model {
@@ -198,6 +197,7 @@ static inline void quat_put(struct quats a, int64_t i, struct quat q)
 #define ABSENT HUGE_VAL     /* of an empty slot, and of a voxel that is not free to move */
 #define WHOLE_BODY 1e300    /* limit of the depth that includes all voxels and bonds */
 #define LONGEST_PAIR 4      /* largest difference of the depths of two voxels that are near */
+#define SPACE 2 /* largest difference of the depths of neighboring cells, if voxels collide */
 
 /* Constants and state of the voxels. */
 struct voxels {
@@ -284,8 +284,7 @@ struct body {
     const vox_model *model;
     struct census census;
     int64_t n_slots, n_tiles;
-    int64_t
-        n_padded; /* slots with the padding after the box, which may contain upper ends of a tile */
+    int64_t n_padded; /* slots with the padding after the box, where a tile may have upper ends */
     int32_t (*coordinates)[3]; /* of each slot in the box */
     int64_t step[3];           /* slots between neighboring cells along each axis */
     int32_t *slots;            /* [n_voxels] slots of the voxels, in the order of cells */

@@ -144,14 +144,20 @@ static void rest_surroundings(struct body *body, bool whole)
     if (s->self_collision && !whole) vox_watch_rest(body);
 }
 
-/* Simulate a body, either as a whole to the end of the duration, or what can affect the samples,
- * and write them. */
+/* Return the number of steps to make: those up to the last sample, unless everything is wanted. */
+static int64_t last_step(const struct body *body, const struct samples *samples)
+{
+    if (body->model->settings.whole_body) return body->census.steps;
+    return samples->n > 0 ? samples->steps[samples->n - 1] : 0;
+}
+
+/* Simulate a body, either as a whole or what can affect the samples, and write them. */
 static struct end run(struct body *body, const uint8_t *material, struct samples samples,
                       bool whole)
 {
     const int64_t *next = samples.steps;
     const int64_t end = samples.row + samples.n;
-    const int64_t last = whole ? body->census.steps : samples.n > 0 ? next[samples.n - 1] : 0;
+    const int64_t last = last_step(body, &samples);
     const double first_limit = whole ? WHOLE_BODY : (double)(last - 1);
     const bool shares = shares_first_step(body, &samples);
     const bool is_made = shares && body->first.limit == first_limit;
@@ -190,28 +196,31 @@ static enum sources sources_of(const struct vox_tracks *tracks)
 }
 
 /* Return whether effects spread only along bonds and across pairs of voxels. */
-static bool has_cone(const vox_model *model)
+static bool has_cone(const struct body *body)
 {
-    const struct vox_settings *s = &model->settings;
+    const struct vox_settings *s = &body->model->settings;
     if (s->whole_body || s->fluid_drag > 0.0) return false;
-    return !s->self_collision || vox_watch_is_possible(model);
+    return !s->self_collision || vox_watch_is_possible(body);
 }
 
 /* Prepare a body for samples, and decide whether it is simulated as a whole. */
 static enum vox_status prepare(struct body *body, const struct samples *samples, bool *whole)
 {
     const vox_model *model = body->model;
-    *whole = !has_cone(model);
+    *whole = !has_cone(body);
     const enum sources sources = *whole ? SOURCE_ALL : sources_of(samples->tracks);
     if (body->sources != sources) {
         vox_cone_shape(body, sources);
         if (!*whole && model->settings.self_collision) {
             const enum vox_status status = vox_watch_shape(body);
-            if (status != VOX_OK) return status;
+            if (status != VOX_OK) {
+                body->sources = SOURCE_UNKNOWN; /* the next call tries again */
+                return status;
+            }
         }
     }
-    if (model->settings.self_collision && samples->n > 0)
-        *whole |= vox_cone_share(body, samples->steps[samples->n - 1]) > LARGEST_SHARE;
+    if (model->settings.self_collision)
+        *whole |= vox_cone_share(body, last_step(body, samples)) > LARGEST_SHARE;
     return VOX_OK;
 }
 

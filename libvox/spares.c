@@ -6,10 +6,12 @@
 
 /* bytes, of all spares together; for larger bodies the time of an allocation is negligible */
 static const size_t MOST_SPARE_MEMORY = (size_t)1 << 26;
+
 static void body_destroy(struct body *body)
 {
     if (!body) return;
     vox_contacts_destroy(&body->contacts);
+    vox_watch_destroy(&body->contacts.watch);
     vox_surface_destroy(&body->surface);
     free(body->memory);
     free(body->material);

@@ -72,7 +72,6 @@ void vox_contacts_destroy(struct contacts *contacts)
     free(contacts->now.list);
     vox_near_by_destroy(&contacts->near_by);
     vox_grid_destroy(&contacts->grid);
-    vox_watch_destroy(&contacts->watch);
 }
 
 /* ---- building a list ------------------------------------------------------------------------- */

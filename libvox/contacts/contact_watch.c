@@ -4,15 +4,23 @@
  * far, which is not known here. Only the list at rest is used. It is sufficient if the voxels in
  * question would have the same contacts with any other list: every pair that touches is in the list
  * at rest, and has always been in the reach of a new one. Otherwise the whole body must be
- * simulated. A voxel that is no longer computed is assumed to become no faster than twice the
- * fastest voxel that has been computed. */
+ * simulated.
+ *
+ * A voxel that is no longer computed is assumed to move at most twice as fast as the fastest voxel
+ * that has been computed, or twice as fast as a wave of the largest strain moves the material, and
+ * to gain more speed only by its weight. A body whose voxels gain speed much faster is unstable,
+ * and is simulated as a whole. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "contacts/touch.h"
 
 static const double FASTER = 2.0;
-static const double ROUNDING = 1e-9; /* relative, of distances */
+static const double GAIN = 1.15; /* of the largest speed in a step; in ten steps about FASTER */
+static const double STRONGEST = 1.25; /* bond damping times the fraction of the largest time step */
+static const double STEPS_PER_EDGE = SPACE * 1.7320508075688772; /* between cells, along any line */
+static const double DIAGONAL = 1.4142135623730951; /* edges, distance of unconnected neighbors */
+static const double ROUNDING = 1e-9;               /* relative, of distances */
 
 /* Largest distance of two voxels that touch, m. */
 static double largest_touch(const vox_model *model)
@@ -26,11 +34,24 @@ static double near_radius(const vox_model *model)
     return vox_contacts_reach(model) + 2.0 * STRAYED * model->settings.voxel_size;
 }
 
-bool vox_watch_is_possible(const vox_model *model)
+/* Return whether no damper is so strong that it increases speeds, because of the time step. */
+static bool damping_is_stable(const struct body *body)
 {
-    const struct vox_settings *s = &model->settings;
+    const struct vox_settings *s = &body->model->settings;
+    const struct voxels *v = &body->voxels;
+    bool stable = s->bond_damping * s->time_step_fraction <= STRONGEST * (double)s->substeps;
+    for (int64_t i = 0; i < body->census.n_voxels; i++) {
+        const int64_t slot = body->slots[i];
+        stable &= v->drag_rate[slot] * body->census.dt <= 1.0 && v->spin_kept[slot] >= 0.0;
+    }
+    return stable;
+}
+
+bool vox_watch_is_possible(const struct body *body)
+{
+    const struct vox_settings *s = &body->model->settings;
     return s->contact_damping == 0.0 && !s->contact_friction &&
-           largest_touch(model) < near_radius(model);
+           largest_touch(body->model) < near_radius(body->model) && damping_is_stable(body);
 }
 
 /* ---- the pairs to watch ---------------------------------------------------------------------- */
@@ -94,14 +115,30 @@ enum vox_status vox_watch_shape(struct body *body)
     for (int64_t group = 0; group < groups; group++)
         watch->begin[group + 2] += watch->begin[group + 1];
     visit(body, watch->begin + 1, watch->pairs.list);
+    watch->deepest = 0.0;
+    for (int64_t i = 0; i < body->census.n_voxels; i++)
+        watch->deepest = fmax(watch->deepest, body->depth[body->slots[i]]);
     return VOX_OK;
+}
+
+/* Speed of the material in a wave of the largest strain, by actuation or by contacts at rest, m/s.
+ */
+static double wave_speed(const vox_model *model)
+{
+    const struct vox_settings *s = &model->settings;
+    double strain = 0.0;
+    for (int32_t i = 0; i < model->n_substances; i++)
+        strain = fmax(strain, fabs(model->substances[i].strain_amplitude));
+    strain = fmin(strain, fmax(s->largest_size - 1.0, 1.0 - s->smallest_size));
+    strain = fmax(strain, s->collision_envelope - DIAGONAL);
+    return strain * s->voxel_size * sqrt(model->fastest) * fmax(1.0, s->bond_damping);
 }
 
 void vox_watch_rest(struct body *body)
 {
     struct watch *watch = &body->contacts.watch;
     if (watch->lost) memset(watch->lost, 0, (size_t)body->contacts.first.n);
-    watch->top_speed = 0.0;
+    watch->wave_speed = watch->top_speed = wave_speed(body->model);
 }
 
 void vox_watch_destroy(struct watch *watch)
@@ -113,28 +150,63 @@ void vox_watch_destroy(struct watch *watch)
 
 /* ---- in a step ------------------------------------------------------------------------------- */
 
-/* Return by how many steps the position of a voxel is older than this step. */
-static double absence(const struct body *body, int32_t slot, double limit)
+/* Update the largest speed; return whether it is not much larger than before. */
+static bool speeds_are_stable(const struct body *body, struct watch *watch)
 {
-    return body->voxels.fixed[slot] == VOX_FIX_ALL
-               ? 0.0
-               : fmax(0.0, (double)body->depth[slot] - limit - 1.0);
+    const double before = fmax(watch->top_speed, FASTER * watch->wave_speed);
+    const double weight = fabs(body->model->settings.gravity) * body->census.dt;
+    watch->top_speed = fmax(watch->top_speed, body->top_speed);
+    return body->top_speed <= GAIN * before + weight;
 }
 
-/* Return whether the voxels of a pair that is not listed may touch. */
+/* Return how far a voxel may have moved since it was computed some steps ago, m. */
+static double way_in(const struct body *body, double steps)
+{
+    const double dt = body->census.dt, gravity = fabs(body->model->settings.gravity);
+    return steps * dt * (FASTER * body->contacts.watch.top_speed + steps * dt * gravity);
+}
+
+/* Return by how many steps the size of a voxel is older than this step. */
+static double absence(const struct body *body, int32_t slot, double limit)
+{
+    return fmax(0.0, (double)body->depth[slot] - limit - 1.0);
+}
+
+/* Return the size of a voxel, or the largest one if it is too old. */
+static double size_in(const struct body *body, int32_t slot, double steps)
+{
+    return steps > 0.0 ? body->model->largest_size : body->voxels.size[slot];
+}
+
+/* Return whether the voxels of a pair that is not listed may touch; at most one of them is not
+ * computed any more. */
 static bool may_touch(const struct body *body, struct pair pair, double limit)
 {
     const struct voxels *v = &body->voxels;
     const double first = absence(body, pair.first, limit),
                  second = absence(body, pair.second, limit);
-    const double missed = first > second ? first : second;
-    const double most = body->model->largest_size;
-    const double sizes = 0.5 * ((first > 0.0 ? most : v->size[pair.first]) +
-                                (second > 0.0 ? most : v->size[pair.second]));
-    const double way = missed * FASTER * body->contacts.watch.top_speed * body->census.dt;
+    const int32_t later = first > second ? pair.first : pair.second;
+    const double sizes =
+        0.5 * (size_in(body, pair.first, first) + size_in(body, pair.second, second));
+    const double way =
+        v->fixed[later] == VOX_FIX_ALL ? 0.0 : way_in(body, first > second ? first : second);
     const double reach = body->model->settings.collision_envelope * sizes + way;
     const struct vec apart = between(v, pair);
     return !(vec_dot(apart, apart) > reach * reach * (1.0 + ROUNDING));
+}
+
+/* Return whether a voxel up to a depth may touch one that was not near at rest. The time since the
+ * latter was computed is limited by their distance, since depths spread through space, by the
+ * deepest voxel, and by the time from the start. */
+static bool far_may_touch(const struct body *body, double limit, double touching)
+{
+    const double edge = body->model->settings.voxel_size, radius = near_radius(body->model);
+    const double most =
+        fmin(body->time / body->census.dt, fmax(0.0, body->contacts.watch.deepest - limit - 1.0));
+    const double closest = fmin(most, STEPS_PER_EDGE * radius / edge - 1.0);
+    const double farther = fmax(radius, (most + 1.0) / STEPS_PER_EDGE * edge);
+    /* between these distances, the way grows faster than the time */
+    return touching + way_in(body, closest) >= radius || touching + way_in(body, most) >= farther;
 }
 
 /* Return whether a pair of voxels up to a depth that is not listed at rest may touch. */
@@ -143,9 +215,9 @@ static bool others_may_touch(const struct body *body, double limit)
     const struct watch *watch = &body->contacts.watch;
     const vox_model *model = body->model;
     const double edge = model->settings.voxel_size;
-    const double step = FASTER * watch->top_speed * body->census.dt;
-    const double reach = largest_touch(model) + 2.0 * body->farthest + (LONGEST_PAIR - 1) * step;
-    if (reach >= near_radius(model)) return true;
+    const double touching = largest_touch(model) + 2.0 * body->farthest;
+    if (far_may_touch(body, limit, touching)) return true;
+    const double reach = fmin(touching + way_in(body, LONGEST_PAIR - 1), near_radius(model));
     const double reach2 = reach / edge * (reach / edge) * (1.0 + ROUNDING);
     const int64_t last = limit < DEPTHS - 1 ? (int64_t)limit : DEPTHS - 1;
     for (int64_t distance2 = 0; (double)distance2 <= reach2; distance2++) {
@@ -164,8 +236,7 @@ bool vox_watch_apply(struct body *body, double limit)
     const struct voxels *v = &body->voxels;
     const double half_envelope = 0.5 * body->model->settings.collision_envelope;
     struct touch touch;
-    watch->top_speed = fmax(watch->top_speed, body->top_speed);
-    if (others_may_touch(body, limit)) return false;
+    if (!speeds_are_stable(body, watch) || others_may_touch(body, limit)) return false;
     for (int64_t i = 0; i < first->n; i++) {
         const struct pair pair = first->list[i];
         if ((double)depth_of(body, pair) > limit) continue;

@@ -93,8 +93,10 @@ struct near_by {
 struct watch {
     int64_t *begin;     /* [(largest2 of the model + 1) * DEPTHS + 2] into `pairs` */
     struct pairs pairs; /* in this order */
-    uint8_t *lost;    /* [first.n] whether a pair listed at rest has been out of reach since then */
-    double top_speed; /* m/s, of any voxel so far */
+    uint8_t *lost;  /* [first.n] whether a pair listed at rest has been out of reach since then */
+    double deepest; /* largest depth of a voxel */
+    double wave_speed; /* m/s, of the material in a wave of the largest strain */
+    double top_speed;  /* m/s, of any voxel so far, or of a wave */
 };
 
 /* Number of depths that are distinguished by their order; all larger ones count as the last. */
@@ -151,6 +153,8 @@ enum vox_status vox_contacts_shape(struct body *body);
 
 /* Reset the list of contact candidates to that at rest. */
 void vox_contacts_rest(struct body *body);
+
+/* Free everything but the watch. */
 void vox_contacts_destroy(struct contacts *contacts);
 
 /* Rebuild the list of contact candidates if it is due; return false if there are too many. */
@@ -159,7 +163,7 @@ bool vox_contacts_refresh(struct body *body);
 /* contact_watch.c */
 
 /* Return whether the list at rest can be sufficient for all steps. */
-bool vox_watch_is_possible(const struct vox_model *model);
+bool vox_watch_is_possible(const struct body *body);
 
 /* Sort the pairs to watch, for the current depths. */
 enum vox_status vox_watch_shape(struct body *body);

@@ -49,10 +49,10 @@ IN_LOOP struct range range_of(const double *group_depth, int64_t base, double li
 /* Numbers of events in the lanes of vectors; a sum over lanes within a loop would be slow. */
 typedef int64_t counts[WIDTH];
 
-IN_LOOP int64_t sum_of(const counts counts)
+IN_LOOP int64_t sum_of(const counts numbers)
 {
     int64_t sum = 0;
-    for (int i = 0; i < WIDTH; i++) sum += counts[i];
+    for (int i = 0; i < WIDTH; i++) sum += numbers[i];
     return sum;
 }
 
