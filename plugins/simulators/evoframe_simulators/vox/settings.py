@@ -33,7 +33,7 @@ class VoxSettings:
     Attributes:
         duration: Simulated time, s.
         voxel_size: Edge of a voxel, m.
-        youngs_modulus: Young's modulus of both built-in materials, Pa.
+        youngs_modulus: Young's modulus of both built-in materials, Pa; simulated in single precision.
         poisson_ratio: Poisson's ratio of both built-in materials.
         density: Density of both built-in materials, kg/m3.
         expansion_coefficient: Linear thermal expansion of a contractile voxel, 1/degree; 0: no contraction.
