@@ -32,9 +32,11 @@ from evoframe.contract.optional import (
     SupportsSettings,
     SupportsUnit,
     SupportsVariants,
+    SupportsWholeDesigns,
     SupportsWindow,
     Variant,
     unit_of,
+    whole_of,
     window_of,
 )
 from evoframe.contract.protocols import (
@@ -124,6 +126,7 @@ __all__ = [
     "SupportsSettings",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWholeDesigns",
     "SupportsWindow",
     "Turn",
     "Variant",
@@ -132,5 +135,6 @@ __all__ = [
     "deciding",
     "is_role",
     "unit_of",
+    "whole_of",
     "window_of",
 ]
