@@ -121,11 +121,6 @@ class TestWholeBody:
         assert same.deciding() == default.deciding()
         assert whole.recorded()["simulator"]["whole_body"] is True
 
-    def test_is_not_left_out_of_a_vxa_file(self) -> None:
-        """It is no part of the experiment."""
-        export, whole = (Vox(whole_body=value).export(bar(1, 3), "vxa") for value in (False, True))
-        assert whole == export
-
 
 class TestMaterials:
     def test_the_built_in_materials_differ_only_in_expansion(self) -> None:
