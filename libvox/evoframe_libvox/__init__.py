@@ -235,7 +235,8 @@ class Result:
             ``float64[N, S, 2]``, smallest and largest strain of a bond; ``momentum`` is
             ``float64[N, S, 6]``, linear in kg m/s and angular about the origin in kg m2/s.
         diverged_step: ``int64[N]``; 0, or the step (from 1) at which the body diverged.
-        repeated: ``bool[N]``; whether the whole body had to be simulated, after what can affect the samples.
+        repeated: ``bool[N]``; whether the body was simulated a second time, as a whole, because voxels that
+            were left out might have affected a sample.
     """
 
     tracks: dict[Track, NDArray[np.float64]]
@@ -253,9 +254,10 @@ class Model:
         fixed: Clamped degrees of freedom of each cell as bits, ``uint8[X, Y, Z]`` (see ``FIX_ALL``).
         kernel: One of ``KERNELS``; by default that of the environment variable ``EVOFRAME_KERNEL``, or the
             fastest.
-        whole_body: Whether to simulate the whole body for the whole duration, instead of what can affect the
-            samples. This changes no bit of the samples, but what cannot affect a sample does not diverge
-            otherwise.
+        whole_body: Whether to simulate the whole body to the end of the duration, so that a divergence
+            anywhere counts. Otherwise only what can affect the samples is simulated, where this can be
+            decided, and a body that diverges out of their reach has not diverged. Samples before a divergence
+            are the same, bit for bit.
 
     Attributes:
         kernel: Name of the kernel, for the provenance of results.
@@ -354,7 +356,7 @@ class Model:
         sample_steps: Sequence[int] | NDArray[np.int64],
         tracks: Iterable[Track] = get_args(Track),
     ) -> Result:
-        """Simulate a batch of independent bodies to the end of the duration.
+        """Simulate a batch of independent bodies.
 
         Args:
             material: ``uint8[N, X, Y, Z]``, material codes.

@@ -37,6 +37,7 @@ from .contract.optional import (
     SupportsSettings as SupportsSettings,
     SupportsUnit as SupportsUnit,
     SupportsVariants as SupportsVariants,
+    SupportsWholeDesigns as SupportsWholeDesigns,
     SupportsWindow as SupportsWindow,
     Variant as Variant,
 )

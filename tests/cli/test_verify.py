@@ -10,6 +10,7 @@ from unittest.mock import ANY
 import numpy as np
 import pytest
 import toys
+from bars import torn
 from processes import Evoframe
 from recorded import written
 
@@ -153,6 +154,27 @@ def test_a_walker_does_not_travel_without_contraction(evoframe: Evoframe) -> Non
     printed = evoframe("verify", walker).stdout
     assert "objective travel, in mm, from 0.3 s to 2 s" in printed
     assert "The score comes from contraction (0% of unchanged)" in printed
+
+
+def test_a_body_that_is_torn_apart_out_of_reach_of_its_score_is_seen(
+    evoframe: Evoframe, tmp_path: Path
+) -> None:
+    roles = torn().roles
+    np.savez(tmp_path / "torn.npz", material=roles["morphology"], phase_cycles=roles["controller"])
+    settings = ["--set", "simulator.largest_strain=0.14"]
+    [score] = json.loads(evoframe("simulate", "torn.npz", *settings, "--json").stdout)["score"]
+    assert score > 1e-4
+    *_, unchanged, within, _, _, _, _, _, verdict = evoframe(
+        "verify", "torn.npz", *settings
+    ).stdout.splitlines()
+    assert columns(unchanged) == ["unchanged", "diverged at step 2", "-"]
+    assert columns(within) == ["within reach of the samples", quantity(score, "m"), "-"]
+    assert verdict == (
+        f"The design diverges at step 2, out of reach of the samples; its score of {quantity(score, 'm')} "
+        "does not show it."
+    )
+    [document] = json.loads(evoframe("verify", "torn.npz", *settings, "--json").stdout)
+    assert [row["median"] for row in document["variants"][:2]] == [None, score]
 
 
 def test_a_score_that_overlooks_the_end_is_warned_of(evoframe: Evoframe, published: Path) -> None:

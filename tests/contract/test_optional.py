@@ -21,10 +21,12 @@ from evoframe.contract.optional import (
     SupportsSettings,
     SupportsUnit,
     SupportsVariants,
+    SupportsWholeDesigns,
     SupportsWindow,
     Variant,
     bit_generation_of,
     unit_of,
+    whole_of,
     window_of,
 )
 
@@ -117,6 +119,13 @@ def test_the_window_of_an_objective_is_the_whole_record_unless_it_says_otherwise
     assert isinstance(AtTheEnd(), SupportsWindow)
     assert window_of(AtTheEnd(), times) == (1.5, 1.5)
     assert window_of(toys.Value(), times[:0]) is None
+
+
+def test_simulators_simulate_whole_designs_if_they_can() -> None:
+    assert isinstance(toys.Shortsighted(), SupportsWholeDesigns)
+    assert whole_of(toys.Shortsighted()) == toys.Shortsighted(whole=True)
+    varied = toys.Varied()
+    assert whole_of(varied) is varied
 
 
 def test_variants_are_compared_by_identity() -> None:

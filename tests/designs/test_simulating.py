@@ -53,6 +53,14 @@ class TestUnscored:
         diverging = attrs.evolve(job, config=attrs.evolve(job.config, simulator=chosen))
         assert simulate_job(diverging) == [Score(None, 1)]
 
+    def test_has_the_divergences_of_whole_designs(
+        self, toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+    ) -> None:
+        made = run(toy_config("simulator={name='toy-shortsighted', torn_at=7}"), out=tmp_path / "run")
+        job = read_job(made, None, (), toy_plugins)
+        assert simulate_job(job) == [Score(made.champion().score)]
+        assert simulate_job(attrs.evolve(job, unscored="ends too early")) == [Score(None, 7)]
+
 
 class TestOverlooked:
     """The end of a simulation that the objective does not look at."""

@@ -9,7 +9,7 @@ from attrs import evolve
 
 from evoframe import Design, RunConfig, Score, Verification
 from evoframe.designs import verdict
-from evoframe.record import Finding
+from evoframe.record import WITHIN_REACH, Finding
 
 
 @pytest.fixture
@@ -57,6 +57,18 @@ def test_a_variant_without_clauses_is_named(config: RunConfig) -> None:
     name = "one number jittered by 10 %"
     found = evolve(verification(), findings=(Finding(name, (Score(2.0, None),)),))
     assert name in verdict(found, config, DESIGN)
+
+
+def test_a_divergence_that_the_score_does_not_show_is_stated(config: RunConfig) -> None:
+    found = evolve(
+        verification(gain_off=None),
+        unchanged=Score(None, 7),
+        findings=(Finding(WITHIN_REACH, (Score(0.0125),)), Finding("gain off", (Score(None, 7),))),
+        unit="m",
+    )
+    assert verdict(found, config, DESIGN) == (
+        "The design diverges at step 7, out of reach of the samples; its score of 12.5 mm does not show it."
+    )
 
 
 def test_without_a_score_there_is_no_verdict(config: RunConfig) -> None:

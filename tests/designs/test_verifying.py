@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 import toys
@@ -11,6 +12,7 @@ import toys
 from evoframe import Design, Outcome, Record, Score, Variant
 from evoframe.contract.optional import SupportsVariants
 from evoframe.designs.verifying import verify_design
+from evoframe.record import WITHIN_REACH
 from evoframe_executors import Threads
 
 PAIR = Design({"a": np.array([3.0]), "b": np.array([-2.0])})
@@ -54,6 +56,32 @@ def test_a_variant_has_its_own_simulator_and_record() -> None:
 
     [later] = verify_design(Watched(), toys.Value(), PAIR, toys.Here()).findings
     assert later.scores == (Score(0.5),)
+
+
+class TestWholeDesigns:
+    """What a run overlooks is seen."""
+
+    torn = toys.Shortsighted(gain=2.0, torn_at=7)
+
+    def test_that_diverge_have_no_score_but_one_within_reach_of_the_samples(self) -> None:
+        verification = verify_design(self.torn, toys.Late(), PAIR, toys.Here(), -12.0)
+        assert verification.unchanged == Score(None, 7)
+        seen, *others = verification.findings
+        assert (seen.name, seen.scores) == (WITHIN_REACH, (Score(-12.0),))
+        assert verification.within_reach == verification.score == -12.0
+        diverged_at = {step for finding in others for step in finding.diverged_at}
+        assert diverged_at == {7}  # variants are whole designs, too
+
+    def test_that_do_not_diverge_are_verified_like_any_other(self) -> None:
+        whole = verify_design(toys.Shortsighted(gain=2.0), toys.Value(), PAIR, toys.Here())
+        assert whole == verify_design(toys.Varied(gain=2.0), toys.Value(), PAIR, toys.Here())
+        assert whole.within_reach is None
+
+    def test_that_diverge_within_reach_have_no_score(self) -> None:
+        verification = verify_design(attrs.evolve(self.torn, limit=1.0), toys.Value(), PAIR, toys.Here())
+        assert verification.unchanged.value is None
+        assert WITHIN_REACH not in [finding.name for finding in verification.findings]
+        assert verification.within_reach is None
 
 
 def test_only_simulators_with_variants_can_verify() -> None:

@@ -208,6 +208,16 @@ def test_a_champion_that_diverges_now_is_detected(
     assert problems(list(check_run(finished, toy_plugins)))["champion"].endswith("diverges at step 1")
 
 
+def test_a_champion_that_diverges_out_of_reach_of_its_samples_is_noted(
+    toy_config: Load, toy_plugins: Plugins, tmp_path: Path
+) -> None:
+    made = run(toy_config("simulator={name='toy-shortsighted', torn_at=7}"), out=tmp_path / "run")
+    [noted] = [check for check in check_run(made.directory, toy_plugins) if check.state != "ok"]
+    assert (noted.subject, noted.state) == ("champion", "note")
+    assert repr(made.champion().score) in noted.finding
+    assert "diverges at step 7" in noted.finding
+
+
 def diverging(_: Any, designs: Any, record: Any) -> Any:
     return [toys.Product(limit=-1.0)._outcome(design) for design in designs]
 

@@ -21,6 +21,17 @@ def soft(code: int, **changed: Any) -> PaletteMaterial:
     return PaletteMaterial(code=code, **{**options, **changed})
 
 
+def torn() -> Design:
+    """Return a long bar whose clamped end, far from the tip, is torn apart if ``largest_strain`` is 0.14.
+
+    Contractions start with a jump there, and smoothly near the tip.
+    """
+    cells, phase = np.ones((40, 1, 2), np.uint8), np.zeros((40, 1, 2))
+    cells[1:5], phase[1:5] = 3, 0.25
+    cells[30:, :, 1] = 3
+    return Design({"morphology": cells, "controller": phase})
+
+
 def bar(*codes: int) -> Design:
     """Return a row of voxels along x with all offsets 0."""
     cells = np.array(codes, np.uint8).reshape(-1, 1, 1)

@@ -336,6 +336,23 @@ class Steered(Varied):
 
 
 @attrs.frozen
+class Shortsighted(Varied):
+    """Overlooks the step at which whole designs diverge; 0: they do not."""
+
+    torn_at: int = 0
+    whole: bool = False
+
+    def for_whole_designs(self) -> Shortsighted:
+        return attrs.evolve(self, whole=True)
+
+    def _outcome(self, design: Design) -> Outcome:
+        outcome = super()._outcome(design)
+        if not (self.whole and self.torn_at):
+            return outcome
+        return attrs.evolve(outcome, tracks={"value": np.full((1, 3), np.nan)}, diverged_at=self.torn_at)
+
+
+@attrs.frozen
 class Suggesting(Varied):
     """Suggests an objective for files with settings, and simulates for longer than it tracks."""
 
@@ -458,6 +475,7 @@ def evoframe_simulators() -> Mapping[str, type[Any]]:
         "toy-fatal": Fatal,
         "toy-varied": Varied,
         "toy-steered": Steered,
+        "toy-shortsighted": Shortsighted,
         "toy-fitting": Fitting,
         "toy-suggesting": Suggesting,
         "toy-demanding": Demanding,

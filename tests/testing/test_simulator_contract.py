@@ -29,6 +29,7 @@ TRACKS = "test_recording_more_tracks_changes_nothing"
 SAMPLES = "test_recording_more_samples_changes_nothing"
 INITIAL = "test_the_initial_state_is_one_more_row"
 OFTEN = "test_sampling_more_often_changes_nothing"
+WHOLE = "test_whole_designs_diverge_whatever_is_recorded"
 KEYS = "test_keys_are_bytes_and_equal_for_equal_designs"
 EQUAL_KEYS = "test_equal_keys_mean_equal_outcomes"
 VARIANTS = "test_variants_are_scored_by_the_same_objective"
@@ -408,6 +409,76 @@ class PublishesAnotherEachTime(Controlled):
         return [("soft", pushed(spring(float(next(self.calls)), 0.0)))]
 
 
+@attrs.frozen
+class Shortsighted(Spring):
+    """A valid simulator that ignores divergences after the last sample, and the base of the broken ones."""
+
+    whole: bool = False
+
+    def for_whole_designs(self) -> Any:
+        return attrs.evolve(self, whole=True)
+
+    def one(self, design: Design, record: Record) -> Outcome:
+        outcome = super().one(design, record)
+        if not outcome.diverged_at or self.whole or not len(outcome.steps):
+            return outcome
+        return self.judged(design, outcome, record)
+
+    def judged(self, design: Design, outcome: Outcome, record: Record) -> Outcome:
+        assert outcome.diverged_at is not None
+        seen = outcome.diverged_at <= outcome.steps[-1]
+        return outcome if seen else attrs.evolve(outcome, diverged_at=None)
+
+
+class ShortsightedContract(SpringContract):
+    def diverging(self) -> Sequence[Design]:
+        return [*super().diverging(), spring(1e5, -1.0), spring(6e4, -1.0)]
+
+
+class TestShortsighted(ShortsightedContract):
+    component = Shortsighted()
+
+
+class ShortsightedWithoutWholeDesigns(Spring):
+    """Judges a divergence by the samples, but does not offer whole designs."""
+
+    def one(self, design: Design, record: Record) -> Outcome:
+        outcome = super().one(design, record)
+        if outcome.diverged_at and outcome.diverged_at > outcome.steps[-1]:
+            return attrs.evolve(outcome, diverged_at=None)
+        return outcome
+
+
+class DivergesEarlierWithFewerSamples(Shortsighted):
+    def judged(self, design: Design, outcome: Outcome, record: Record) -> Outcome:
+        return outcome if len(outcome.steps) > 1 else attrs.evolve(outcome, diverged_at=1)
+
+
+class DisturbedBeforeADivergence(Shortsighted):
+    def judged(self, design: Design, outcome: Outcome, record: Record) -> Outcome:
+        return changed(super().judged(design, outcome, record), lambda track: track + len(outcome.steps))
+
+
+class DisturbedWithoutDivergence(Shortsighted):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track + len(record.samples or ()))
+
+
+class NothingIsWhole(Shortsighted):
+    def for_whole_designs(self) -> Any:
+        return self
+
+
+class WholeIsAnotherSimulator(Shortsighted):
+    def for_whole_designs(self) -> Any:
+        return Spring()
+
+
+class WholeMovesOtherwise(Shortsighted):
+    def one(self, design: Design, record: Record) -> Outcome:
+        return changed(super().one(design, record), lambda track: track + self.whole)
+
+
 class IgnoresUntil(Spring):
     def check(self, record: Record) -> None:
         super().check(attrs.evolve(record, until=0.0))
@@ -565,6 +636,7 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
         (DisturbedByTracks(), TRACKS),
         (DisturbedBySamples(), SAMPLES),
         (DisturbedByRate(), OFTEN),
+        (ShortsightedWithoutWholeDesigns(), SAMPLES),
         (IgnoresInitial(), INITIAL),
         (HidesDivergence(), FINITE),
         (HidesDivergence(), DIVERGENCE),
@@ -606,6 +678,24 @@ def changed(outcome: Outcome, change: Callable[[NDArray[np.float64]], Any]) -> O
 )
 def test_a_broken_simulator_is_caught(component: Any, law: str, breaks: Callable[..., None]) -> None:
     breaks(SpringContract, component, law)
+
+
+@pytest.mark.parametrize(
+    ("component", "law"),
+    [
+        (DivergesEarlierWithFewerSamples(), SAMPLES),
+        (DisturbedBeforeADivergence(), OFTEN),
+        (DisturbedWithoutDivergence(), SAMPLES),
+        (NothingIsWhole(), WHOLE),
+        (WholeIsAnotherSimulator(), WHOLE),
+        (WholeMovesOtherwise(), WHOLE),
+    ],
+    ids=name_of,
+)
+def test_a_broken_rule_for_divergences_is_caught(
+    component: Any, law: str, breaks: Callable[..., None]
+) -> None:
+    breaks(ShortsightedContract, component, law)
 
 
 @pytest.mark.parametrize(

@@ -33,10 +33,12 @@ from evoframe.contract.optional import (
     SupportsSettings,
     SupportsUnit,
     SupportsVariants,
+    SupportsWholeDesigns,
     SupportsWindow,
     Variant,
     bit_generation_of,
     unit_of,
+    whole_of,
     window_of,
 )
 from evoframe.contract.protocols import (
@@ -127,6 +129,7 @@ __all__ = [
     "SupportsSettings",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWholeDesigns",
     "SupportsWindow",
     "Turn",
     "Variant",
@@ -136,5 +139,6 @@ __all__ = [
     "deciding",
     "is_role",
     "unit_of",
+    "whole_of",
     "window_of",
 ]

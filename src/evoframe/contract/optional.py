@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 import attrs
 import numpy as np
@@ -37,12 +37,16 @@ __all__ = [
     "SupportsSettings",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWholeDesigns",
     "SupportsWindow",
     "Variant",
     "bit_generation_of",
     "unit_of",
+    "whole_of",
     "window_of",
 ]
+
+S = TypeVar("S", bound=Simulator)
 
 
 @runtime_checkable
@@ -195,6 +199,22 @@ class SupportsVariants(Simulator, Protocol):
 
 
 @runtime_checkable
+class SupportsWholeDesigns(Simulator, Protocol):
+    """A simulator that judges divergence by what can affect the recorded samples (:class:`~evoframe.Record`).
+
+    It need not simulate what cannot affect any sample of a record. If only that would diverge, the design has
+    not diverged for that record. ``evoframe verify`` and ``doctor`` simulate whole designs, so that every
+    divergence is seen.
+    """
+
+    def for_whole_designs(self) -> Self:
+        """Return this simulator with another rule: a divergence anywhere counts, whatever is recorded.
+
+        Samples before the divergence are the same, bit for bit. Its variants have this rule, too.
+        """
+
+
+@runtime_checkable
 class SupportsGeometry(Simulator, Protocol):
     """A simulator that provides the shape of its designs (figures and pages of reports)."""
 
@@ -292,6 +312,11 @@ def window_of(objective: Objective, times: NDArray[np.float64]) -> tuple[float, 
         return None
     first, last = objective.window(times) if isinstance(objective, SupportsWindow) else (times[0], times[-1])
     return float(first), float(last)
+
+
+def whole_of(simulator: S) -> S:
+    """Return the simulator for whole designs; *simulator* itself unless it :class:`SupportsWholeDesigns`."""
+    return simulator.for_whole_designs() if isinstance(simulator, SupportsWholeDesigns) else simulator
 
 
 def unit_of(objective: Objective) -> str:

@@ -173,14 +173,17 @@ class Simulator(Protocol):
 
     Laws: a batch gives the same outcomes as its members one by one, bit for bit; any number of threads may
     call it at the same time; recording more does not change the outcome; equal keys imply equal outcomes; the
-    outcome of a diverged simulation states the step of divergence.
+    outcome of a diverged simulation states the step of divergence. What diverges within reach of a sample, so
+    that it can affect the sample, is recorded as diverged. If a simulator ignores divergences out of reach of
+    all samples, it offers :class:`~evoframe.SupportsWholeDesigns`. Recording more then brings more within
+    reach, and changes nothing only in outcomes that do not diverge.
 
     It may offer any of :class:`~evoframe.SupportsReading`,
     :class:`~evoframe.SupportsSettings`, :class:`~evoframe.SupportsDialects`,
     :class:`~evoframe.SupportsObjective`, :class:`~evoframe.SupportsDuration`,
     :class:`~evoframe.SupportsExport`, :class:`~evoframe.SupportsVariants`,
-    :class:`~evoframe.SupportsGeometry`, :class:`~evoframe.SupportsRandomControllers` and
-    :class:`~evoframe.SupportsPublished`.
+    :class:`~evoframe.SupportsGeometry`, :class:`~evoframe.SupportsRandomControllers`,
+    :class:`~evoframe.SupportsPublished` and :class:`~evoframe.SupportsWholeDesigns`.
     """
 
     @property

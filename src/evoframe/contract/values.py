@@ -75,6 +75,10 @@ class Record:
     Samples follow the rule of the paper's engine: sample 0 is taken after the first step, each further one
     after the first step that ends at least *every* seconds after the sample before it.
 
+    Recording more tracks or samples changes nothing in an outcome that does not diverge. A simulation may
+    judge divergence by what can affect the recorded samples (:class:`~evoframe.SupportsWholeDesigns`): what
+    diverges out of their reach, or after the last one, has not diverged for this record.
+
     Attributes:
         tracks: Names of the tracks. Each point in a simulator's ``tracks`` gives ``float64[samples, 3]`` in
             meters; other tracks that it accepts have the shapes that it documents.
@@ -102,7 +106,8 @@ class Outcome:
         tracks: Name -> ``float64[samples, 3]``, positions in meters, or the shape that the simulator
             documents if the track is not a point; NaN from the divergence on.
         diverged_at: Step at which the simulation diverged, or ``None``. A simulation that cannot start
-            diverges at step 0, and may have no samples.
+            diverges at step 0, and may have no samples. It may have diverged out of reach of the samples
+            without being reported (:class:`Record`).
     """
 
     steps: NDArray[np.int64]

@@ -15,6 +15,7 @@ from evoframe.contract import (
     Simulator,
     SupportsDuration,
     blaming,
+    whole_of,
 )
 from evoframe.designs.sources import Job, naming
 from evoframe.evolution import evaluator_of
@@ -33,8 +34,12 @@ def simulate_job(job: Job) -> list[Score]:
     """
     config = job.config
     if job.unscored:
-        unscored = attrs.evolve(config.objective, component=_Divergence(config.simulator.component.tracks))
-        config = attrs.evolve(config, objective=unscored)
+        whole = whole_of(config.simulator.component)
+        config = attrs.evolve(
+            config,
+            simulator=attrs.evolve(config.simulator, component=whole),
+            objective=attrs.evolve(config.objective, component=_Divergence(whole.tracks)),
+        )
     evaluator = evaluator_of(config)
     try:
         with naming(job.path):
@@ -46,7 +51,7 @@ def simulate_job(job: Job) -> list[Score]:
 
 @attrs.frozen
 class _Divergence:
-    """An objective for simulations without a score: it records one sample, which every simulation has."""
+    """An objective for whole simulations without a score; it records one sample, which every one has."""
 
     tracks: tuple[str, ...]
 

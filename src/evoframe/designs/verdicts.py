@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from evoframe.contract import Design, RunConfig, SupportsVariants
+from evoframe.messages import quantity
 from evoframe.record import Verification
 
 __all__ = ["verdict"]
@@ -15,7 +16,8 @@ def verdict(verification: Verification, config: RunConfig, design: Design) -> st
     """Return what the findings mean for the score, in the words of the simulator.
 
     A variant with 90 to 110 % of the score, or at most 50 %, contributes its clause, any other one its name.
-    Both are followed by the share of the score that is left.
+    Both are followed by the share of the score that is left. For a design that diverges out of reach of the
+    samples, only this is stated.
 
     Args:
         verification: The verification of *design*.
@@ -25,6 +27,10 @@ def verdict(verification: Verification, config: RunConfig, design: Design) -> st
     Returns:
         A sentence; empty if the unchanged design has no score or the simulator offers no variants.
     """
+    seen = verification.within_reach
+    if seen is not None:
+        diverges = f"diverges at step {verification.unchanged.diverged_at}, out of reach of the samples"
+        return f"The design {diverges}; its score of {quantity(seen, verification.unit)} does not show it."
     simulator = config.simulator.component
     if not isinstance(simulator, SupportsVariants) or not verification.unchanged.value:
         return ""

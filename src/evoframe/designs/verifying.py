@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import attrs
+
 from evoframe.config import layers_of, read_layers
 from evoframe.contract import (
     Design,
@@ -18,11 +20,12 @@ from evoframe.contract import (
     SupportsVariants,
     Variant,
     unit_of,
+    whole_of,
 )
 from evoframe.designs.sources import Job, naming, read_job
 from evoframe.errors import ConfigurationError
 from evoframe.evolution import score_designs
-from evoframe.record import UNCHANGED, Finding, Run, Verification, keep_verification
+from evoframe.record import UNCHANGED, WITHIN_REACH, Finding, Run, Verification, keep_verification
 from evoframe.registry import Plugins, discover
 
 __all__ = ["keep_of_job", "verify", "verify_job"]
@@ -124,6 +127,9 @@ def verify_design(
 ) -> Verification:
     """Simulate a design unchanged and in all variants of its simulator.
 
+    Whole designs are simulated. If the unchanged one diverges, it is also simulated as in a run, whose score
+    may not see the divergence.
+
     Args:
         simulator: The simulator, which offers the variants.
         objective: Scores all simulations.
@@ -134,10 +140,15 @@ def verify_design(
     Raises:
         RunError: The simulator or the objective failed, or returned an invalid result.
     """
-    variants = list(simulator.variants(design, objective.record))
-    unchanged = Variant(UNCHANGED, simulator, design, objective.record)
-    first, *others = workers.map(functools.partial(_score, objective), [unchanged, *variants])
+    whole, score_of = whole_of(simulator), functools.partial(_score, objective)
+    variants = list(whole.variants(design, objective.record))
+    unchanged = Variant(UNCHANGED, whole, design, objective.record)
+    first, *others = workers.map(score_of, [unchanged, *variants])
     drawn: dict[str, list[Score]] = {}
+    if first.value is None and whole is not simulator:
+        [seen] = workers.map(score_of, [attrs.evolve(unchanged, simulator=simulator)])
+        if seen.value is not None:
+            drawn[WITHIN_REACH] = [seen]
     for variant, given in zip(variants, others, strict=True):
         drawn.setdefault(variant.name, []).append(given)
     findings = tuple(Finding(name, tuple(scores)) for name, scores in drawn.items())

@@ -13,7 +13,13 @@ from evoframe.record.provenance import (
 )
 from evoframe.record.run import Report, Run, load_run, open_run, open_unchecked
 from evoframe.record.store import Store
-from evoframe.record.verification import UNCHANGED, Finding, Verification, keep_verification
+from evoframe.record.verification import (
+    UNCHANGED,
+    WITHIN_REACH,
+    Finding,
+    Verification,
+    keep_verification,
+)
 
 __all__ = [
     "CHAINED",
@@ -22,6 +28,7 @@ __all__ = [
     "RECORD_FILES",
     "SINGLE",
     "UNCHANGED",
+    "WITHIN_REACH",
     "Champion",
     "Finding",
     "Report",

@@ -15,10 +15,20 @@ from evoframe.errors import InputError
 from evoframe.files import write_json
 from evoframe.record.layout import VERIFICATION_FILE
 
-__all__ = ["UNCHANGED", "Finding", "Verification", "keep_verification", "verification_from_json"]
+__all__ = [
+    "UNCHANGED",
+    "WITHIN_REACH",
+    "Finding",
+    "Verification",
+    "keep_verification",
+    "verification_from_json",
+]
 
 UNCHANGED = "unchanged"
 """Name of the unchanged simulation, with which all others are compared."""
+
+WITHIN_REACH = "within reach of the samples"
+"""Name of the simulation whose score does not see the divergence of the unchanged one."""
 
 _FORMAT = 1
 
@@ -58,7 +68,8 @@ class Verification:
 
     Attributes:
         unchanged: Score of the unchanged design.
-        findings: Its scores with one thing changed, in the order of the simulator's variants.
+        findings: Its scores with one thing changed, in the order of the simulator's variants; before them, if
+            the unchanged design diverges out of reach of all samples, the score that does not see it.
         unit: Unit of all scores; empty if the objective declares none.
         score: Its score in the run, if the design is a champion simulated as in its run.
     """
@@ -72,6 +83,12 @@ class Verification:
     def rows(self) -> tuple[Finding, ...]:
         """The unchanged design as a finding, followed by all other findings."""
         return (Finding(UNCHANGED, (self.unchanged,)), *self.findings)
+
+    @property
+    def within_reach(self) -> float | None:
+        """Score if the design diverges out of reach of the samples, in the objective's unit; or ``None``."""
+        found = [finding for finding in self.findings if finding.name == WITHIN_REACH]
+        return found[0].median if found and self.unchanged.value is None else None
 
     def share(self, finding: Finding) -> float | None:
         """Return the median of *finding* as a fraction of the unchanged score; ``None`` if undefined."""

@@ -24,6 +24,7 @@ from evoframe.contract import (
     SupportsPublished,
     SupportsRandomControllers,
     SupportsVariants,
+    SupportsWholeDesigns,
     Variant,
 )
 from evoframe.errors import ConfigurationError
@@ -40,6 +41,9 @@ class SimulatorContract(ComponentContract[Simulator]):
     Override :meth:`designs`, and :meth:`diverging` if a simulation can diverge. A simulation that diverges at
     step 0 has not started, and may have no samples. Optional capabilities (duration, suggested objective,
     variants, formats, geometries, random controllers, published bodies) are tested if the simulator has them.
+
+    Recording more must change nothing. Only in a simulator that offers ``for_whole_designs`` may a divergence
+    depend on what is recorded: the outcome of a smaller record may diverge later or not at all.
     """
 
     protocol = Simulator
@@ -186,17 +190,19 @@ class SimulatorContract(ComponentContract[Simulator]):
         )
 
     def test_recording_more_tracks_changes_nothing(self) -> None:
-        """A track recorded alone equals the track recorded with others."""
+        """A track recorded alone equals the track recorded with others, before a divergence."""
         whole = self._simulate(self._all())
         for track in self.record().tracks:
             alone = self._simulate(self._all(), attrs.evolve(self.record(), tracks=(track,)))
             for one, all_ in zip(alone, whole, strict=True):
-                assert same_outcome(one, attrs.evolve(all_, tracks={track: all_.tracks[track]})), (
-                    f"track '{track}' recorded alone differs from the same track recorded with others"
+                self._assert_unchanged(
+                    one,
+                    attrs.evolve(all_, tracks={track: all_.tracks[track]}),
+                    f"track '{track}' recorded alone differs from the same track recorded with others",
                 )
 
     def test_recording_more_samples_changes_nothing(self) -> None:
-        """A sample recorded alone equals the sample recorded with others."""
+        """A sample recorded alone equals the sample recorded with others, before a divergence."""
         every_sample = attrs.evolve(self.record(), samples=None, initial=False)
         whole = self._simulate(self._all(), every_sample)
         last = min(len(outcome.steps) for outcome in whole if _has_started(outcome)) - 1
@@ -204,8 +210,10 @@ class SimulatorContract(ComponentContract[Simulator]):
             record = attrs.evolve(every_sample, samples=(sample,))
             for one, all_ in zip(self._simulate(self._all(), record), whole, strict=True):
                 if _has_started(all_):
-                    assert same_outcome(one, _rows(all_, slice(sample, sample + 1))), (
-                        f"sample {sample} recorded alone differs from the same sample recorded with others"
+                    self._assert_unchanged(
+                        one,
+                        _rows(all_, slice(sample, sample + 1)),
+                        f"sample {sample} recorded alone differs from the same sample recorded with others",
                     )
 
     def test_the_initial_state_is_one_more_row(self) -> None:
@@ -221,7 +229,7 @@ class SimulatorContract(ComponentContract[Simulator]):
                 )
 
     def test_sampling_more_often_changes_nothing(self) -> None:
-        """Outcomes recorded at different intervals agree in their common steps."""
+        """Outcomes recorded at different intervals agree in their common steps, before a divergence."""
         often = self._simulate(self._all(), Record(self.record().tracks))
         every = float(often[0].times[-1]) / 3
         seldom = self._simulate(self._all(), Record(self.record().tracks, every=every))
@@ -229,9 +237,34 @@ class SimulatorContract(ComponentContract[Simulator]):
             assert set(one.steps) <= set(all_.steps), (
                 "the record of every step must contain every sampled step"
             )
-            assert same_outcome(one, _rows(all_, np.isin(all_.steps, one.steps))), (
-                f"samples differ if they are recorded every {every} s instead of after every step"
+            self._assert_unchanged(
+                one,
+                _rows(all_, np.isin(all_.steps, one.steps)),
+                f"samples differ if they are recorded every {every} s instead of after every step",
             )
+
+    def test_whole_designs_diverge_whatever_is_recorded(self) -> None:
+        """``for_whole_designs`` changes only which divergences count; those do not depend on the record."""
+        component = self.component
+        if not isinstance(component, SupportsWholeDesigns):
+            return
+        whole = component.for_whole_designs()
+        assert isinstance(whole, type(component)), (
+            f"for_whole_designs() must return a {type(component).__name__}, found {type(whole).__name__}"
+        )
+        most = Record(tuple(component.tracks))
+        expected = [outcome.diverged_at for outcome in whole.simulate(self._all(), most)]
+        for record in (most, attrs.evolve(most, tracks=most.tracks[:1]), attrs.evolve(most, samples=(0,))):
+            outcomes = whole.simulate(self._all(), record)
+            found = [outcome.diverged_at for outcome in outcomes]
+            assert found == expected, (
+                f"divergences of whole designs depend on what is recorded: {found} with {record}, {expected} "
+                f"with {most}"
+            )
+            for one, all_ in zip(self._simulate(self._all(), record), outcomes, strict=True):
+                self._assert_unchanged(
+                    one, all_, "samples before a divergence differ from those of whole designs"
+                )
 
     def test_keys_are_bytes_and_equal_for_equal_designs(self) -> None:
         """Keys are bytes, and a copy of a design has the same key."""
@@ -442,6 +475,15 @@ class SimulatorContract(ComponentContract[Simulator]):
             else []
         )
 
+    def _assert_unchanged(self, less: Outcome, more: Outcome, problem: str) -> None:
+        """Fail unless *less*, recorded alone, equals the same samples of an outcome with more of them.
+
+        What diverges in *more* may be out of reach of the samples of *less*, if the simulator offers whole
+        designs.
+        """
+        may_ignore = isinstance(self.component, SupportsWholeDesigns) and more.diverged_at is not None
+        assert same_outcome(less, more) or (may_ignore and _is_ignored_divergence(less, more)), problem
+
     def _all(self) -> list[Design]:
         return [*self.designs(), *self.diverging()]
 
@@ -456,6 +498,14 @@ def _assert_same(outcomes: Sequence[Outcome], others: Sequence[Outcome], problem
 
 def _has_started(outcome: Outcome) -> bool:
     return outcome.diverged_at != 0
+
+
+def _is_ignored_divergence(less: Outcome, more: Outcome) -> bool:
+    """Return whether *less* equals *more*, which diverges, until then, and diverges later or not at all."""
+    step = more.diverged_at or 0
+    is_later = less.diverged_at is None or less.diverged_at > step
+    one, other = (attrs.evolve(_rows(each, each.steps < step), diverged_at=None) for each in (less, more))
+    return is_later and np.array_equal(less.steps, more.steps) and same_outcome(one, other)
 
 
 def _rows(outcome: Outcome, rows: slice | np.ndarray) -> Outcome:

@@ -17,6 +17,7 @@ from evoframe import (
     SupportsReading,
     SupportsSettings,
     SupportsVariants,
+    SupportsWholeDesigns,
 )
 from evoframe_simulators import Vox, evoframe_simulators
 
@@ -40,6 +41,7 @@ def test_vox_is_offered_by_name() -> None:
         SupportsReading,
         SupportsSettings,
         SupportsVariants,
+        SupportsWholeDesigns,
     ],
 )
 def test_vox_has_every_capability_of_a_simulator(capability: type) -> None:

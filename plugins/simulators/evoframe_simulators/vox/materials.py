@@ -22,7 +22,7 @@ class PaletteMaterial:
 
     Attributes:
         code: Value of its cells in a body, 1 to 255; 0 is an empty cell.
-        youngs_modulus: Young's modulus, Pa.
+        youngs_modulus: Young's modulus, Pa; simulated in single precision, as in the paper's engine.
         poisson_ratio: Poisson's ratio, 0 to 0.5; it affects only the twist of bonds.
         density: Density, kg/m3.
         expansion_coefficient: Linear thermal expansion, 1/degree; 0 is passive, and negative coefficients
@@ -61,10 +61,10 @@ def describe_codes(materials: Mapping[int, PaletteMaterial]) -> str:
 
 
 def solver_palette(materials: Mapping[int, PaletteMaterial]) -> dict[int, libvox.Material]:
-    """Return the materials in the form that the solver takes."""
+    """Return the materials in the form that the solver takes, with moduli in single precision."""
     return {
         code: libvox.Material(
-            youngs_modulus=material.youngs_modulus,
+            youngs_modulus=_simulated_modulus(material),
             poisson_ratio=material.poisson_ratio,
             density=material.density,
             expansion=material.expansion_coefficient,
@@ -73,6 +73,12 @@ def solver_palette(materials: Mapping[int, PaletteMaterial]) -> dict[int, libvox
         )
         for code, material in materials.items()
     }
+
+
+def _simulated_modulus(material: PaletteMaterial) -> float:
+    """Return Young's modulus as the engine stores it; the lower limit, which would become less, remains."""
+    smallest = libvox.PROPERTY_RANGES["youngs_modulus"].lower
+    return max(smallest, round_to_single(material.youngs_modulus))
 
 
 def round_to_single(value: float) -> float:

@@ -39,8 +39,13 @@ def model_of(settings: VoxSettings, canvas: Canvas) -> libvox.Model:
     Raises:
         ValueError: The solver rejects the settings.
     """
-    palette = solver_palette(materials_of(settings))
-    return libvox.Model(canvas, palette, _solver_settings(settings), fixed_mask(settings.fixed, canvas))
+    return libvox.Model(
+        canvas,
+        solver_palette(materials_of(settings)),
+        _solver_settings(settings),
+        fixed_mask(settings.fixed, canvas),
+        whole_body=settings.whole_body,
+    )
 
 
 @functools.lru_cache(maxsize=16)

@@ -33,7 +33,7 @@ class VoxSettings:
     Attributes:
         duration: Simulated time, s.
         voxel_size: Edge of a voxel, m.
-        youngs_modulus: Young's modulus of both built-in materials, Pa.
+        youngs_modulus: Young's modulus of both built-in materials, Pa; simulated in single precision.
         poisson_ratio: Poisson's ratio of both built-in materials.
         density: Density of both built-in materials, kg/m3.
         expansion_coefficient: Linear thermal expansion of a contractile voxel, 1/degree; 0: no contraction.
@@ -81,6 +81,10 @@ class VoxSettings:
         largest_strain: Strain of a bond, dimensionless, beyond which the body counts as diverged.
         largest_distance: Distance of a voxel from its initial position, as a multiple of the longest edge of
             the canvas, beyond which the body counts as diverged.
+        whole_body: Whether to simulate the whole body for the whole duration, so that a divergence anywhere
+            counts. Otherwise only what can affect the recorded samples is simulated, and a body that diverges
+            out of their reach has not diverged (docs/solver.md, "What is not computed"). Samples are the
+            same, bit for bit.
     """
 
     duration: float = attrs.field(default=0.07, validator=VALID_SETTING["duration"])
@@ -130,6 +134,7 @@ class VoxSettings:
     collision_damping: float = attrs.field(default=0.8, validator=VALID_SETTING["floor_damping"])
     largest_strain: float = attrs.field(default=100.0, validator=VALID_SETTING["largest_strain"])
     largest_distance: float = attrs.field(default=100.0, validator=VALID_SETTING["largest_distance"])
+    whole_body: bool = attrs.field(default=False, metadata=ADDED_LATER)
 
 
 def materials_of(settings: VoxSettings) -> dict[int, PaletteMaterial]:

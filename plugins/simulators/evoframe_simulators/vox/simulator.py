@@ -7,7 +7,7 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import attrs
 import numpy as np
@@ -131,6 +131,10 @@ class Vox(VoxSettings):
         for design in designs:
             check_design(design)
         return objective_of(self, (design.roles[MORPHOLOGY] for design in designs))
+
+    def for_whole_designs(self) -> Self:
+        """Return this simulator with ``whole_body``: a divergence anywhere counts."""
+        return attrs.evolve(self, whole_body=True)
 
     def variants(self, design: Design, record: Record) -> list[Variant]:
         """Return the variants to which ``evoframe verify`` compares a design (see :mod:`.verification`).

@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 import pytest
-from bars import bar, soft
+from bars import bar, soft, torn
 from hypothesis import given, strategies as st
 
 from evoframe import ConfigurationError, Record
@@ -32,6 +32,18 @@ def test_equal_simulators_share_a_model() -> None:
     first, again = Vox(gravity=-1.0), Vox(gravity=-1.0)
     assert first is not again
     assert model_of(first, (2, 1, 1)) is model_of(again, (2, 1, 1))
+
+
+@pytest.mark.parametrize("whole_body", [False, True])
+def test_a_model_may_be_of_whole_bodies(whole_body: bool) -> None:
+    vox, record = (
+        Vox(largest_strain=0.14, whole_body=whole_body),
+        Record(("tip",), every=0.01, samples=(0, 5)),
+    )
+    [outcome] = vox.simulate([torn()], record)
+    assert outcome.diverged_at == (2 if whole_body else None)
+    assert np.isfinite(outcome.tracks["tip"]).all() != whole_body
+    assert Vox(whole_body=whole_body).for_whole_designs() == Vox(whole_body=True)
 
 
 @given(

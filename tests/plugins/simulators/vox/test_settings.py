@@ -111,6 +111,17 @@ class TestValue:
         assert hash(pickle.loads(pickle.dumps(Vox()))) == hash(Vox())  # noqa: S301 - workers receive it pickled
 
 
+class TestWholeBody:
+    def test_determines_a_result_only_if_it_is_set(self) -> None:
+        default, same, whole = (
+            load_config("paper", overrides=overrides)
+            for overrides in ([], ["simulator.whole_body=false"], ["simulator.whole_body=true"])
+        )
+        assert "whole_body" not in default.recorded()["simulator"]
+        assert same.deciding() == default.deciding()
+        assert whole.recorded()["simulator"]["whole_body"] is True
+
+
 class TestMaterials:
     def test_the_built_in_materials_differ_only_in_expansion(self) -> None:
         passive, contractile = materials_of(VoxSettings(density=7.0)).values()

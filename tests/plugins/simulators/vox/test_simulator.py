@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bars import bar, soft
+from bars import bar, soft, torn
 
 from evoframe import ConfigurationError, Design, InputError, Record
 from evoframe.testing import SimulatorContract
@@ -17,6 +17,7 @@ from evoframe_simulators import FixedRegion, Vox
 
 DATA = Path(__file__).parents[3] / "data"
 PAPER = Record(("tip",), every=0.01, samples=(0, 5))
+EARLY = Record(("tip",), every=0.01, samples=(0, 3))
 
 
 def golden() -> dict[str, Any]:
@@ -58,6 +59,25 @@ class TestVox(SimulatorContract):
     def diverging(self) -> list[Design]:
         empty = np.zeros((4, 3, 3), np.uint8)
         return [Design({"morphology": empty, "controller": np.zeros(empty.shape)})]
+
+
+class TestTornVox(TestVox):
+    """A body that diverges only if it is simulated as a whole, or recorded near the divergence."""
+
+    component = Vox(duration=0.05, largest_strain=0.14)
+
+    def designs(self) -> list[Design]:
+        return [bar(1, 3, 3, 1), bar(1, 3, 3), bar(3)]
+
+    def diverging(self) -> list[Design]:
+        return [*super().diverging(), torn()]
+
+    def test_the_tip_alone_does_not_diverge(self) -> None:
+        """The examples contain what the laws are about."""
+        [alone], [whole] = (
+            vox.simulate([torn()], EARLY) for vox in (self.component, self.component.for_whole_designs())
+        )
+        assert (alone.diverged_at, whole.diverged_at) == (None, 2)
 
 
 class TestWalkingVox(TestVox):

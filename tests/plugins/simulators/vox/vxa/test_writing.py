@@ -179,6 +179,10 @@ class TestLeftOut:
         vox = Vox(self_collision=False, collision_envelope=1.0, contact_damping=0.1, contact_friction=True)
         assert vox.export(body(), "vxa").left_out == ()
 
+    def test_is_nothing_that_is_no_part_of_the_experiment(self) -> None:
+        export, whole = (Vox(whole_body=value).export(body(), "vxa") for value in (False, True))
+        assert whole == export
+
     def test_every_option_is_written_or_named(self) -> None:
         elsewhere = {
             *("duration", "voxel_size", "palette", "temperature_base", "temperature_amplitude", "frequency"),
@@ -186,7 +190,7 @@ class TestLeftOut:
             *("self_collision", "collision_horizon", "time_step_fraction", "bond_damping", "slow_damping"),
             *("collision_damping", "youngs_modulus", "poisson_ratio", "density", "expansion_coefficient"),
             *("static_friction", "dynamic_friction", "smallest_size", "largest_size", "size_rule"),
-            "fluid_surface",
+            *("fluid_surface", "whole_body"),
         }
         named = {case[0] for case in _cases(TestLeftOut.test_names_options_without_a_tag)}
         assert named | elsewhere == {field.name for field in attrs.fields(Vox)}
