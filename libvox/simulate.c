@@ -159,7 +159,7 @@ static struct end run(struct body *body, const uint8_t *material, struct samples
     const int64_t end = samples.row + samples.n;
     const int64_t last = last_step(body, &samples);
     const double first_limit = whole ? WHOLE_BODY : (double)(last - 1);
-    const bool shares = shares_first_step(body, &samples);
+    const bool shares = last > 0 && shares_first_step(body, &samples);
     const bool is_made = shares && body->first.limit == first_limit;
     int64_t row = samples.row;
     rest_surroundings(body, whole);

@@ -2,8 +2,8 @@
  *
  * The sanitizers detect reads and writes out of bounds. The checks here abort the program if another guarantee fails:
  * statuses and culprits are within their ranges, a refused call leaves buffers unchanged, samples are finite up to a
- * divergence and NaN after it, fixed voxels do not move, and the results of a body do not depend on the rest of the
- * batch.
+ * divergence and NaN after it, fixed voxels do not move, and the results of a body depend neither on the rest of the
+ * batch nor on what the solver leaves out.
  *
  * The solver is compiled with these allocators, so that any of its allocations can fail on demand.
  */
@@ -177,6 +177,7 @@ static int64_t width_of(enum track track, const struct arguments *a)
 struct outcome {
     double *tracks[N_TRACKS]; /* NULL if not wanted */
     int64_t *diverged;
+    uint8_t *repeated;
     enum vox_status status;
     int64_t culprit;
 };
@@ -192,6 +193,8 @@ static struct outcome outcome_create(const struct arguments *a, unsigned wanted)
     }
     out.diverged = exactly(a->n_bodies, sizeof *out.diverged);
     memset(out.diverged, CANARY, (size_t)a->n_bodies * sizeof *out.diverged);
+    out.repeated = exactly(a->n_bodies, 1);
+    memset(out.repeated, CANARY, (size_t)a->n_bodies);
     return out;
 }
 
@@ -199,6 +202,7 @@ static void outcome_destroy(struct outcome *out)
 {
     for (int track = 0; track < N_TRACKS; track++) free(out->tracks[track]);
     free(out->diverged);
+    free(out->repeated);
 }
 
 static bool is_untouched(const void *place, int64_t length)
@@ -211,7 +215,8 @@ static bool is_untouched(const void *place, int64_t length)
 
 static bool outcome_is_untouched(const struct outcome *out, const struct arguments *a)
 {
-    bool fine = is_untouched(out->diverged, a->n_bodies * (int64_t)sizeof *out->diverged);
+    bool fine = is_untouched(out->diverged, a->n_bodies * (int64_t)sizeof *out->diverged) &&
+                is_untouched(out->repeated, a->n_bodies);
     for (unsigned track = 0; track < N_TRACKS; track++) {
         const int64_t length = a->n_bodies * a->n_samples * width_of(track, a);
         if (out->tracks[track]) fine &= is_untouched(out->tracks[track], length * (int64_t)sizeof(double));
@@ -229,7 +234,8 @@ static struct outcome simulate(const vox_model *model, const struct arguments *a
     out.status = vox_simulate(fault == NO_MODEL ? NULL : model, a->n_bodies, fault == NO_MATERIAL ? NULL : a->material,
                               fault == NO_PHASES ? NULL : a->phases, a->n_samples,
                               fault == NO_SAMPLE_STEPS ? NULL : a->samples, fault == NO_TRACKS ? NULL : &tracks,
-                              fault == NO_DIVERGED_STEP ? NULL : out.diverged, fault == NO_CULPRIT ? NULL : &out.culprit);
+                              fault == NO_DIVERGED_STEP ? NULL : out.diverged,
+                              fault == NO_CULPRIT ? NULL : out.repeated, fault == NO_CULPRIT ? NULL : &out.culprit);
     allocations_left = -1;
     if (fault != NO_CULPRIT) check_status(out.status, out.culprit, a);
     if (out.status != VOX_OK && out.status != VOX_NO_MEMORY) CHECK(outcome_is_untouched(&out, a));
@@ -247,7 +253,8 @@ static void call_with_absurd_numbers(const vox_model *model, const struct argume
     const struct vox_tracks tracks = {out.tracks[TIP],    out.tracks[FACE],   out.tracks[BODY],    out.tracks[VOXELS],
                                       out.tracks[ENERGY], out.tracks[STRAIN], out.tracks[MOMENTUM]};
     out.status = vox_simulate(model, bodies ? absurd : a->n_bodies, a->material, a->phases,
-                              bodies ? a->n_samples : absurd, a->samples, &tracks, out.diverged, &out.culprit);
+                              bodies ? a->n_samples : absurd, a->samples, &tracks, out.diverged, out.repeated,
+                              &out.culprit);
     CHECK(out.status == VOX_BAD_BATCH && out.culprit == -1);
     CHECK(vox_status_message(out.status)[0] != '\0' && vox_status_message((enum vox_status)1000)[0] != '\0');
     if (bodies) CHECK(vox_time_steps(model, absurd, a->material, NULL, NULL, NULL) == VOX_BAD_BATCH);
@@ -297,6 +304,8 @@ static void check_outcome(const struct arguments *a, const struct outcome *out, 
 {
     for (int64_t body = 0; body < a->n_bodies; body++) {
         CHECK(out->diverged[body] >= 0 && out->diverged[body] <= steps[body]);
+        CHECK(out->repeated[body] <= 1);
+        if (a->settings.whole_body) CHECK(!out->repeated[body]);
         for (int64_t sample = 0; sample < a->n_samples; sample++) check_sample(a, out, body, sample);
     }
 }
@@ -323,32 +332,91 @@ static void alone_destroy(struct arguments *one)
     free(one->samples);
 }
 
-/* Checks that a body simulated alone with all tracks has the same results as in its batch. */
+/* Checks that the first samples of a body are the same in both outcomes. */
+static void check_tracks(const struct arguments *a, const struct outcome *all, int64_t body, const struct outcome *one,
+                         int64_t n_samples)
+{
+    for (unsigned track = 0; track < N_TRACKS; track++) {
+        const int64_t width = width_of(track, a);
+        if (all->tracks[track])
+            CHECK(same(all->tracks[track] + body * a->n_samples * width, one->tracks[track], n_samples * width));
+    }
+}
+
+/* Checks that a body simulated alone has the same results as in its batch. */
 static void check_alone(const vox_model *model, const struct arguments *a, const struct outcome *all, int64_t body,
                         const int64_t *steps)
 {
     struct arguments one = alone(a, body, a->n_samples);
-    struct outcome out = simulate(model, &one, ~0u);
+    struct outcome out = simulate(model, &one, a->wanted);
     CHECK(out.status == VOX_OK);
     CHECK(out.diverged[0] == all->diverged[body]);
+    CHECK(out.repeated[0] == all->repeated[body]);
     check_outcome(&one, &out, &steps[body]);
-    for (unsigned track = 0; track < N_TRACKS; track++) {
-        const int64_t length = a->n_samples * width_of(track, a);
-        if (all->tracks[track]) CHECK(same(all->tracks[track] + body * length, out.tracks[track], length));
-    }
+    check_tracks(a, all, body, &out, a->n_samples);
     outcome_destroy(&out);
     alone_destroy(&one);
 }
 
-/* Checks that results do not depend on the recorded tracks. */
+/* Checks that a body computed as a whole, with all tracks, has the same results, unless it diverges: the usual result
+ * diverges at most by what can affect it, and not earlier. */
+static void check_whole(const vox_model *whole, const struct arguments *a, const struct outcome *all, int64_t body,
+                        const int64_t *steps)
+{
+    struct arguments one = alone(a, body, a->n_samples);
+    struct outcome out = simulate(whole, &one, ~0u);
+    const int64_t diverged = all->diverged[body];
+    CHECK(out.status == VOX_OK);
+    CHECK(out.repeated[0] == 0);
+    check_outcome(&one, &out, &steps[body]);
+    if (out.diverged[0] == 0) CHECK(diverged == 0);
+    if (diverged > 0) CHECK(out.diverged[0] <= diverged);
+    if (a->settings.whole_body) CHECK(out.diverged[0] == diverged);
+    int64_t n = 0; /* samples before the whole body diverges */
+    while (n < a->n_samples && (out.diverged[0] == 0 || one.samples[n] < out.diverged[0])) n++;
+    check_tracks(a, all, body, &out, out.diverged[0] == diverged ? a->n_samples : n);
+    outcome_destroy(&out);
+    alone_destroy(&one);
+}
+
+/* Checks that the divergence of a whole body does not depend on what is recorded, and that otherwise nothing is
+ * simulated without a sample. */
 static void check_unseen(const vox_model *model, const struct arguments *a, const struct outcome *all, int64_t body)
 {
     struct arguments one = alone(a, body, 0);
     struct outcome out = simulate(model, &one, 0);
     CHECK(out.status == VOX_OK);
-    CHECK(out.diverged[0] == all->diverged[body]);
+    CHECK(out.diverged[0] == (a->settings.whole_body ? all->diverged[body] : 0));
+    CHECK(out.repeated[0] == 0);
     outcome_destroy(&out);
     alone_destroy(&one);
+}
+
+static void check_bodies(const vox_model *model, const struct arguments *a, const struct outcome *all,
+                         const int64_t *steps)
+{
+    struct arguments thorough = *a;
+    thorough.settings.whole_body = 1;
+    vox_model *whole = make(&thorough);
+    CHECK(whole != NULL);
+    check_outcome(a, all, steps);
+    for (int64_t body = 0; body < a->n_bodies; body++) {
+        check_alone(model, a, all, body, steps);
+        check_whole(whole, a, all, body, steps);
+        check_unseen(model, a, all, body);
+    }
+    vox_model_destroy(whole);
+}
+
+/* Checks that a model works after it ran out of memory. */
+static void check_afterwards(const vox_model *model, const struct arguments *a, const int64_t *steps)
+{
+    struct arguments again = *a;
+    again.fault = NO_FAULT;
+    struct outcome out = simulate(model, &again, again.wanted);
+    CHECK(out.status != VOX_NO_MEMORY);
+    if (out.status == VOX_OK) check_bodies(model, &again, &out, steps);
+    outcome_destroy(&out);
 }
 
 /* Checks that the culprit of a batch is refused alone too, for the same reason. */
@@ -374,15 +442,10 @@ static void run(const vox_model *model, struct arguments *a, const int64_t *step
 {
     struct outcome out = simulate(model, a, a->wanted);
     check_missing(a, out.status);
-    const bool whole = a->fault == NO_FAULT || a->fault == ABSURD_CODES;
-    if (out.status == VOX_OK && whole) {
-        check_outcome(a, &out, steps);
-        for (int64_t body = 0; body < a->n_bodies; body++) {
-            check_alone(model, a, &out, body, steps);
-            check_unseen(model, a, &out, body);
-        }
-    }
-    if (out.status > VOX_BAD_BATCH && whole) check_culprit(model, a, &out);
+    const bool valid = a->fault == NO_FAULT || a->fault == ABSURD_CODES;
+    if (out.status == VOX_OK && valid) check_bodies(model, a, &out, steps);
+    if (out.status > VOX_BAD_BATCH && valid) check_culprit(model, a, &out);
+    if (out.status == VOX_NO_MEMORY) check_afterwards(model, a, steps);
     outcome_destroy(&out);
 }
 

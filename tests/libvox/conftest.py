@@ -38,11 +38,15 @@ def small_model(
     canvas: tuple[int, int, int],
     palette: dict[int, Material] | None = None,
     fixed: ArrayLike | None = None,
+    *,
+    kernel: str | None = None,
+    whole_body: bool = False,
     **changes: Any,
 ) -> Model:
     """Return a model, by default without fixed cells."""
     held = np.zeros(canvas, np.uint8) if fixed is None else np.asarray(fixed, np.uint8).reshape(canvas)
-    return Model(canvas, palette or PALETTE, small_settings(**changes), held)
+    settings = small_settings(**changes)
+    return Model(canvas, palette or PALETTE, settings, held, kernel=kernel, whole_body=whole_body)
 
 
 def follow(

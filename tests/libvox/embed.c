@@ -37,15 +37,17 @@ int main(void)
         return 1;
     }
     int64_t steps, diverged_step = 0;
+    uint8_t repeated = 0;
     double tip[3], energy[2];
     const struct vox_tracks tracks = {.tip = tip, .energy = energy};
     status = vox_time_steps(model, 1, material, NULL, &steps, NULL);
     if (status == VOX_OK)
-        status = vox_simulate(model, 1, material, phase_cycles, 1, &steps, &tracks, &diverged_step, NULL);
+        status = vox_simulate(model, 1, material, phase_cycles, 1, &steps, &tracks, &diverged_step,
+                              &repeated, NULL);
     if (status == VOX_OK && diverged_step == 0) {
         printf("tip after %d steps: %.9f %.9f %.9f m\n", (int)steps, tip[0], tip[1], tip[2]);
         printf("energy: %.9f J in bonds, %.9f J kinetic\n", energy[0], energy[1]);
     }
     vox_model_destroy(model);
-    return status != VOX_OK || diverged_step != 0;
+    return status != VOX_OK || diverged_step != 0 || repeated;
 }

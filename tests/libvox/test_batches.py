@@ -34,13 +34,13 @@ def same(a: Result, b: Result) -> bool:
     tracks = a.tracks.keys() == b.tracks.keys() and all(
         np.array_equal(a.tracks[name], b.tracks[name], equal_nan=True) for name in a.tracks
     )
-    return tracks and np.array_equal(a.diverged_step, b.diverged_step)
+    ends = np.array_equal(a.diverged_step, b.diverged_step) and np.array_equal(a.repeated, b.repeated)
+    return tracks and ends
 
 
 def part(result: Result, bodies: slice) -> Result:
-    return Result(
-        {name: track[bodies] for name, track in result.tracks.items()}, result.diverged_step[bodies]
-    )
+    tracks = {name: track[bodies] for name, track in result.tracks.items()}
+    return Result(tracks, result.diverged_step[bodies], result.repeated[bodies])
 
 
 def test_a_batch_equals_its_members(model: Model, bodies: Bodies) -> None:
@@ -83,7 +83,7 @@ def test_the_order_of_a_batch_does_not_matter(model: Model, bodies: Bodies) -> N
     plain = model.simulate(*bodies, range(20))
     shuffled = model.simulate(bodies[0][order], bodies[1][order], range(20))
     expected = {name: track[order] for name, track in plain.tracks.items()}
-    assert same(shuffled, Result(expected, plain.diverged_step[order]))
+    assert same(shuffled, Result(expected, plain.diverged_step[order], plain.repeated[order]))
 
 
 def test_phases_of_cells_that_do_not_expand_do_not_matter(model: Model, bodies: Bodies) -> None:
@@ -122,7 +122,7 @@ def test_an_empty_batch_is_allowed(model: Model) -> None:
     nothing = np.zeros((0, *CANVAS))
     result = model.simulate(nothing.astype(np.uint8), nothing, [0, 1])
     assert result.tracks["voxels"].shape == (0, 2, *CANVAS, 3)
-    assert result.diverged_step.shape == (0,)
+    assert result.diverged_step.shape == result.repeated.shape == (0,)
 
 
 def test_divergence_is_reported_and_does_not_affect_others(

@@ -185,7 +185,7 @@ def test_canvas_sizes_do_not_overflow(edges: tuple[int, int, int]) -> None:
 def test_missing_arguments_of_a_batch(model: Any) -> None:
     material, phase = ffi.new("uint8_t[2]", [1, 1]), ffi.new("double[2]")
     steps, tracks, diverged = ffi.new("int64_t[1]"), ffi.new("struct vox_tracks *"), ffi.new("int64_t[1]")
-    arguments = [model, 1, material, phase, 1, steps, tracks, diverged, ffi.NULL]
+    arguments = [model, 1, material, phase, 1, steps, tracks, diverged, ffi.NULL, ffi.NULL]
     assert lib.vox_simulate(*arguments) == lib.VOX_OK
     for i in (0, 2, 3, 5, 6, 7):
         assert lib.vox_simulate(*arguments[:i], ffi.NULL, *arguments[i + 1 :]) == lib.VOX_NULL_ARGUMENT
@@ -204,7 +204,8 @@ def test_the_culprit_is_the_body(model: Any) -> None:
         ([0, 1, 2, 23], lib.VOX_SAMPLE_OUT_OF_RANGE, 1),
     ):
         rows = ffi.new("int64_t[4]", steps)
-        assert lib.vox_simulate(model, 2, material, phase, 2, rows, tracks, diverged, culprit) == status
+        arguments = [model, 2, material, phase, 2, rows, tracks, diverged, ffi.NULL, culprit]
+        assert lib.vox_simulate(*arguments) == status
         assert culprit[0] == body
     limited = ffi.new("vox_model **")
     assert (
@@ -219,18 +220,22 @@ def test_a_call_that_fails_does_not_change_the_buffers(model: Any) -> None:
     """Also those of bodies before the invalid one."""
     material, phase = ffi.new("uint8_t[4]", [1, 1, 1, 2]), ffi.new("double[4]")
     tip, diverged = ffi.new("double[6]", [7.0] * 6), ffi.new("int64_t[2]", [7, 7])
+    repeated = ffi.new("uint8_t[2]", [7, 7])
     tracks, steps = ffi.new("struct vox_tracks *", {"tip": tip}), ffi.new("int64_t[2]", [1, 1])
-    status = lib.vox_simulate(model, 2, material, phase, 1, steps, tracks, diverged, ffi.NULL)
+    status = lib.vox_simulate(model, 2, material, phase, 1, steps, tracks, diverged, repeated, ffi.NULL)
     assert status == lib.VOX_UNKNOWN_MATERIAL
     assert list(tip) == [7.0] * 6
     assert list(diverged) == [7, 7]
+    assert list(repeated) == [7, 7]
 
 
 def test_steps_may_be_missing_without_samples(model: Any) -> None:
     material, phase = ffi.new("uint8_t[2]", [1, 1]), ffi.new("double[2]")
     tracks, diverged = ffi.new("struct vox_tracks *"), ffi.new("int64_t[1]", [5])
-    assert lib.vox_simulate(model, 1, material, phase, 0, ffi.NULL, tracks, diverged, ffi.NULL) == lib.VOX_OK
-    assert diverged[0] == 0
+    repeated = ffi.new("uint8_t *", 5)
+    status = lib.vox_simulate(model, 1, material, phase, 0, ffi.NULL, tracks, diverged, repeated, ffi.NULL)
+    assert status == lib.VOX_OK
+    assert diverged[0] == repeated[0] == 0
 
 
 @pytest.mark.parametrize(("bodies", "samples"), [(-1, 1), (1, -1), (2**62, 1), (2**31, 2**31), (1, 2**62)])
@@ -238,7 +243,7 @@ def test_batch_sizes_do_not_overflow(model: Any, bodies: int, samples: int) -> N
     material, phase = ffi.new("uint8_t[2]", [1, 1]), ffi.new("double[2]")
     steps, tracks, diverged = ffi.new("int64_t[1]"), ffi.new("struct vox_tracks *"), ffi.new("int64_t[1]")
     status = lib.vox_simulate(
-        model, bodies, material, phase, samples, steps, tracks, diverged, ffi.new("int64_t *")
+        model, bodies, material, phase, samples, steps, tracks, diverged, ffi.NULL, ffi.new("int64_t *")
     )
     assert status == lib.VOX_BAD_BATCH
 

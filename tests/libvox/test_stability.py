@@ -133,8 +133,23 @@ def test_the_other_bodies_in_a_batch_are_not_affected(
             assert np.array_equal(track[0], result.tracks[name][body], equal_nan=True)
 
 
-def test_divergence_after_the_last_sample_is_reported(small_model: ModelMaker) -> None:
-    options = {"gravity": -9.81, "slow_damping": 0.0, "duration": 1.0, "largest_distance": 1.0}
-    result = small_model((1, 1, 2), **options).simulate(COLUMN, np.zeros(COLUMN.shape), [0, 5])
-    assert result.diverged_step[0] > 5
-    assert all(np.isfinite(track).all() for track in result.tracks.values())
+@pytest.mark.parametrize("self_collision", [False, True])
+@pytest.mark.parametrize("fluid_drag", [0.0, 1.0])
+def test_divergence_after_the_last_sample_is_reported_only_for_the_whole_body(
+    small_model: ModelMaker, fluid_drag: float, self_collision: bool
+) -> None:
+    options: dict[str, Any] = {
+        "gravity": -9.81,
+        "slow_damping": 0.0,
+        "duration": 1.0,
+        "largest_distance": 1.0,
+    }
+    options |= {"fluid_drag": fluid_drag, "self_collision": self_collision}
+    for samples in ([0], [0, 5]):
+        whole = small_model((1, 1, 2), whole_body=True, **options)
+        result = whole.simulate(COLUMN, np.zeros(COLUMN.shape), samples)
+        assert result.diverged_step[0] > 5
+        assert all(np.isfinite(track).all() for track in result.tracks.values())
+        usual = small_model((1, 1, 2), **options).simulate(COLUMN, np.zeros(COLUMN.shape), samples)
+        assert usual.diverged_step.tolist() == [0]
+        assert all(np.array_equal(track, result.tracks[name]) for name, track in usual.tracks.items())
