@@ -68,6 +68,20 @@ def test_every_design_gets_its_score_and_none_is_simulated_twice(
     scorer.close()
 
 
+def test_the_key_of_a_repeated_object_is_computed_once() -> None:
+    asked = []
+
+    class Noting(Counting):
+        def key(self, given: Design, record: Record) -> bytes:
+            asked.append(given)
+            return super().key(given, record)
+
+    one, equal = design(1, 2), design(1, 2)
+    scores = evaluator(Noting()).evaluate([one, equal, one], 3)
+    assert [score.value for score in scores] == [2.0, 2.0, 2.0]
+    assert asked == [one, equal]  # designs are compared by identity
+
+
 def test_designs_are_decoded_while_others_are_simulated() -> None:
     started = threading.Event()
 

@@ -7,7 +7,7 @@ import math
 import numbers
 import statistics
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any, Self, TypeAlias
 
 import attrs
@@ -19,7 +19,6 @@ from evoframe.contract import (
     Aggregator,
     BestPair,
     CollaborationStrategy,
-    Design,
     Pair,
     Score,
     Scores,
@@ -29,13 +28,11 @@ from evoframe.contract import (
 )
 from evoframe.documents import structure
 from evoframe.errors import ComponentError
+from evoframe.evolution.decoding import Meeting, decoded_designs
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.population import Population
 
 __all__ = ["Coevolution", "first_meetings"]
-
-Meeting: TypeAlias = tuple[int, ...]
-"""One position in each population: the members of a pair."""
 
 Fold: TypeAlias = Callable[[Scores], float]
 
@@ -203,19 +200,10 @@ class Coevolution:
         """Score unique meetings, sorted so that designs with the same first members share a batch."""
         together = sorted(meetings)
         with self._naming_individuals(together):
-            scores = self.evaluator.evaluate(self._designs(together), len(together))
+            designs = decoded_designs(self.populations, together)
+            scores = self.evaluator.evaluate(designs, len(together))
         by_meeting = dict(zip(together, scores, strict=True))
         return {meeting: by_meeting[meeting] for meeting in meetings}
-
-    def _designs(self, meetings: Iterable[Meeting]) -> Iterator[Design]:
-        """Decode unique meetings; the common part of those with the same first members is decoded once."""
-        decoded: dict[Meeting, Design] = {(): Design()}
-        for meeting in meetings:
-            for length, population in enumerate(self.populations, start=1):
-                shared = meeting[:length]
-                if shared not in decoded:
-                    decoded[shared] = population.decode(shared[-1], decoded[shared[:-1]])
-            yield decoded.pop(meeting)
 
     @contextlib.contextmanager
     def _naming_individuals(self, meetings: Sequence[Meeting]) -> Iterator[None]:
@@ -244,7 +232,7 @@ class Coevolution:
                 self.best_score, best = score.value, meeting
         if best is None or self.best_score is None:
             return None
-        [design] = self._designs([best])
+        [design] = decoded_designs(self.populations, [best])
         chosen = list(zip(self.populations, best, strict=True))
         return BestPair(
             turn=self.turn,

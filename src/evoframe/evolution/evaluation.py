@@ -75,10 +75,13 @@ class Evaluator:
     ) -> Iterator[dict[bytes, Design]]:
         """Yield batches of the designs to simulate; append the key of every design to *keys*."""
         record = self.objective.record
+        key_of: dict[Design, bytes] = {}  # designs are compared by identity
         known: set[bytes] = set()
         batch: dict[bytes, Design] = {}
         for design in designs:
-            keys.append(key := self._key(design, record))
+            if design not in key_of:
+                key_of[design] = self._key(design, record)
+            keys.append(key := key_of[design])
             if key not in known and key not in self._cache:
                 known.add(key)
                 batch[key] = design
