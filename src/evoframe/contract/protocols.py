@@ -86,6 +86,9 @@ class Encoder(Protocol):
 
     Laws: roles, shapes and dtypes are as declared; decoding is pure, and total: every network gives a design.
 
+    In a run, a network that is called again with the same read-only array returns the same values, also
+    read-only, without evaluating them again.
+
     It may offer :class:`~evoframe.SupportsInputNames` and :class:`~evoframe.SupportsOutputNames`.
     """
 

@@ -19,6 +19,9 @@ from evoframe.files import json_text
 
 __all__ = ["Population"]
 
+_PLAIN = {(int, int, int, int), (int, int, int, type(None))}
+"""Types of the id, the size, the age and the species of a member that need no conversion."""
+
 
 @attrs.define
 class Population:
@@ -65,7 +68,7 @@ class Population:
         """Return the network that the genome at *position* expresses."""
         if position not in self._networks:
             with blaming(self._evolver, self.called(position)):
-                self._networks[position] = self.evolver.express(self.genomes[position])
+                self._networks[position] = _Remembering(self.evolver.express(self.genomes[position]))
         return self._networks[position]
 
     def dump(self, position: int) -> Any:
@@ -199,6 +202,8 @@ class Population:
     def _plain(self, member: Member) -> Member:
         """Return *member* with Python integers, which the record requires."""
         given = (member.id, member.genome_size, member.age)
+        if (*map(type, given), type(member.species)) in _PLAIN:
+            return member
         wrong = [value for value in given if not isinstance(value, numbers.Integral)]
         if not isinstance(member.species, numbers.Integral | None):
             wrong.append(member.species)
@@ -218,6 +223,29 @@ class Population:
             self._champion = latest.get(self._champion.id, self._champion)
         if self._champion is None or _rank(best) > _rank(self._champion):
             self._champion = best
+
+
+@attrs.define
+class _Remembering:
+    """A network that remembers its values for the latest read-only points.
+
+    An encoder that evaluates the whole canvas for each body thus computes the same values only once.
+    """
+
+    _network: Network
+    _points: NDArray[np.float64] | None = None
+    _values: NDArray[np.float64] = attrs.field(factory=lambda: np.empty(0))
+
+    def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        if points is self._points:
+            return self._values
+        values = self._network(points)
+        if points.flags.writeable:
+            return values
+        values = values.copy()  # the network may use its array again
+        values.setflags(write=False)
+        self._points, self._values = points, values
+        return values
 
 
 @attrs.frozen
