@@ -119,7 +119,7 @@ def test_batches_keep_the_order_and_shrink_towards_the_end(count: int, workers: 
     sizes = [len(batch) for batch in batches]
     assert [a for batch in batches for a in batch] == list(range(count))
     assert sizes == sorted(sizes, reverse=True)
-    assert max(sizes, default=1) <= 4
+    assert max(sizes, default=1) <= 8
     assert sizes[-1:] in ([], [1])
 
 

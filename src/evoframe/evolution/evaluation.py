@@ -25,7 +25,7 @@ from evoframe.errors import ComponentError, WorkerError
 
 __all__ = ["Evaluator", "score_designs"]
 
-_LARGEST_BATCH = 4  # designs; they share the overhead of a call and the preparation of a common body
+_LARGEST_BATCH = 8  # designs; they share the overhead of a call and the preparation of a common body
 _BATCHES_PER_WORKER = 2  # batches shrink towards the end, so that all workers finish together
 
 
@@ -85,7 +85,7 @@ class Evaluator:
             if key not in known and key not in self._cache:
                 known.add(key)
                 batch[key] = design
-            if len(batch) >= self._batch_size(count - len(keys)):
+            if batch and len(batch) >= self._batch_size(count - len(keys)):
                 yield batch
                 batch = {}
         if batch:
