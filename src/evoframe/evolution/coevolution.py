@@ -55,6 +55,8 @@ class Coevolution:
         aggregator: Aggregates the scores of an individual into its fitness.
         evaluator: Scores designs.
         generations: Generations per population.
+        meanwhile: Called in each turn while the workers simulate, to complete what concerns the turn before.
+            The populations are those of that turn, except the one that has reproduced since.
         turn: Index of the latest turn; -1 before the first.
         best_score: Best score of a pair so far.
     """
@@ -64,6 +66,7 @@ class Coevolution:
     aggregator: Aggregator
     evaluator: Evaluator
     generations: int
+    meanwhile: Callable[[], None] = attrs.field(default=lambda: None, init=False)
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
     _fittest_have_met: bool = attrs.field(default=False, init=False)
@@ -201,7 +204,7 @@ class Coevolution:
         together = sorted(meetings)
         with self._naming_individuals(together):
             designs = decoded_designs(self.populations, together)
-            scores = self.evaluator.evaluate(designs, len(together))
+            scores = self.evaluator.evaluate(designs, len(together), self.meanwhile)
         by_meeting = dict(zip(together, scores, strict=True))
         return {meeting: by_meeting[meeting] for meeting in meetings}
 
