@@ -113,6 +113,34 @@ class TestReproduction:
         assert population.generation == 0
 
 
+class TestBreeding:
+    def test_changes_nothing_until_reproduction(self) -> None:
+        population, alone = new_population(), new_population()
+        for each in (population, alone):
+            each.judge([1.0, 2.0, 3.0, 4.0], None)
+        population.breed()
+        assert (population.generation, population.genomes) == (0, alone.genomes)
+        assert population.members == alone.members
+        assert population.state() == alone.state()
+        for each in (population, alone):
+            each.reproduce()
+        assert (population.generation, population.genomes) == (1, alone.genomes)
+        assert population.members == alone.members
+        for each in (population, alone):
+            each.judge([1.0, 2.0, 3.0, 4.0], None)
+        assert population.state() == alone.state()
+
+    def test_is_discarded_when_a_state_is_restored(self) -> None:
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        state = json.loads(json.dumps(population.state()))
+        population.breed()
+        population.restore(state)
+        assert population.state() == state
+        population.reproduce()
+        assert population.generation == 1
+
+
 class TestNetwork:
     def test_evaluates_the_same_read_only_points_once(self, monkeypatch: pytest.MonkeyPatch) -> None:
         evaluated = counted_evaluations(monkeypatch)

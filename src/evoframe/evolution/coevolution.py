@@ -98,8 +98,8 @@ class Coevolution:
 
     def fittest_pair(self) -> Pair:
         """Return the fittest of each population as a pair; after the last turn, its score is known."""
-        meeting = self._fittest()
-        return self._pair(meeting, self._scores([meeting])[meeting])
+        [pair] = self._pairs(self._scores([self._fittest()]))
+        return pair
 
     def state(self, changed: Collection[str] | None = None) -> dict[str, Any]:
         """Return everything needed to continue after the latest turn, as JSON values.
@@ -172,7 +172,7 @@ class Coevolution:
     ) -> Turn:
         """Score the unique *meetings* of a turn, and set the fitness of the *judged* populations."""
         simulated = self.evaluator.simulations
-        scores = self._scores(meetings)
+        scores = self._scores(meetings, self._use_time_of_simulations)
         for index in judged:
             self._judge(index, scores, fold)
         self.turn += 1
@@ -180,7 +180,7 @@ class Coevolution:
         return Turn(
             index=self.turn,
             reports=tuple(self.populations[index].report() for index in judged),
-            pairs=tuple(self._pair(meeting, score) for meeting, score in scores.items()),
+            pairs=self._pairs(scores),
             best_pair=self._best_pair(scores),
             workload=Workload(
                 pairs=len(scores),
@@ -188,6 +188,12 @@ class Coevolution:
                 seconds=time.perf_counter() - started,
             ),
         )
+
+    def _use_time_of_simulations(self) -> None:
+        """Complete what concerns the turn before, and breed the population that reproduces in the next."""
+        self.meanwhile()
+        if 0 <= self.turn < self.length - 1:
+            self.populations[(self.turn + 1) % len(self.populations)].breed()
 
     def _judge(self, index: int, scores: Mapping[Meeting, Score], fold: Fold) -> None:
         """Set the fitness of each member of a population to the *fold* of the scores of its meetings."""
@@ -199,12 +205,14 @@ class Coevolution:
         fitness = [_fitness(row, fold, population.called(i)) for i, row in enumerate(rows)]
         population.judge(fitness, floor)
 
-    def _scores(self, meetings: Collection[Meeting]) -> dict[Meeting, Score]:
+    def _scores(
+        self, meetings: Collection[Meeting], meanwhile: Callable[[], None] = lambda: None
+    ) -> dict[Meeting, Score]:
         """Score unique meetings, sorted so that designs with the same first members share a batch."""
         together = sorted(meetings)
         with self._naming_individuals(together):
             designs = decoded_designs(self.populations, together)
-            scores = self.evaluator.evaluate(designs, len(together), self.meanwhile)
+            scores = self.evaluator.evaluate(designs, len(together), meanwhile)
         by_meeting = dict(zip(together, scores, strict=True))
         return {meeting: by_meeting[meeting] for meeting in meetings}
 
@@ -220,12 +228,12 @@ class Coevolution:
             names = (" with ".join(p.called(position) for p, position in pairs) for pairs in met)
             raise attrs.evolve(error, concerns="; ".join(names)) from error
 
-    def _pair(self, meeting: Meeting, score: Score) -> Pair:
-        ids = tuple(
-            population.members[position].id
-            for population, position in zip(self.populations, meeting, strict=True)
+    def _pairs(self, scores: Mapping[Meeting, Score]) -> tuple[Pair, ...]:
+        ids = [[member.id for member in population.members] for population in self.populations]
+        return tuple(
+            Pair(tuple(map(list.__getitem__, ids, meeting)), score.value, score.diverged_at)
+            for meeting, score in scores.items()
         )
-        return Pair(ids, score.value, score.diverged_at)
 
     def _best_pair(self, scores: Mapping[Meeting, Score]) -> BestPair | None:
         """Return the best pair of this turn if it exceeds all earlier ones; the earliest wins ties."""
