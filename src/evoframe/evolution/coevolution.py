@@ -7,7 +7,7 @@ import math
 import numbers
 import statistics
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Self, TypeAlias
 
 import attrs
@@ -70,6 +70,7 @@ class Coevolution:
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
     _fittest_have_met: bool = attrs.field(default=False, init=False)
+    _latest: dict[tuple[int, ...], Score] = attrs.field(factory=dict, init=False)
 
     @property
     def length(self) -> int:
@@ -122,6 +123,7 @@ class Coevolution:
         loop = structure(state["loop"], _Loop, ("loop",))
         self.turn, self.best_score = loop.turn, loop.best_score
         self._fittest_have_met = loop.fittest_have_met
+        self._latest = {}
         for population in self.populations:
             population.restore(state[f"population/{population.name}"])
 
@@ -175,12 +177,14 @@ class Coevolution:
         scores = self._scores(meetings, self._use_time_of_simulations)
         for index in judged:
             self._judge(index, scores, fold)
+        pairs = self._pairs(scores)
+        self._latest = {pair.genomes: score for pair, score in zip(pairs, scores.values(), strict=True)}
         self.turn += 1
         self._fittest_have_met = self._fittest() in scores
         return Turn(
             index=self.turn,
             reports=tuple(self.populations[index].report() for index in judged),
-            pairs=self._pairs(scores),
+            pairs=pairs,
             best_pair=self._best_pair(scores),
             workload=Workload(
                 pairs=len(scores),
@@ -208,13 +212,22 @@ class Coevolution:
     def _scores(
         self, meetings: Collection[Meeting], meanwhile: Callable[[], None] = lambda: None
     ) -> dict[Meeting, Score]:
-        """Score unique meetings, sorted so that designs with the same first members share a batch."""
-        together = sorted(meetings)
-        with self._naming_individuals(together):
-            designs = decoded_designs(self.populations, together)
-            scores = self.evaluator.evaluate(designs, len(together), meanwhile)
-        by_meeting = dict(zip(together, scores, strict=True))
-        return {meeting: by_meeting[meeting] for meeting in meetings}
+        """Return the scores of unique meetings; pairs of the latest turn are not evaluated again."""
+        latest = self._latest  # an id stands for one genome
+        pairs = zip(meetings, self._ids(meetings), strict=True)
+        known = {meeting: latest[ids] for meeting, ids in pairs if ids in latest}
+        # Sorted, so that designs with the same first members share a batch.
+        unknown = sorted(set(meetings) - known.keys())
+        with self._naming_individuals(unknown):
+            designs = decoded_designs(self.populations, unknown)
+            scores = self.evaluator.evaluate(designs, len(unknown), meanwhile)
+        known.update(zip(unknown, scores, strict=True))
+        return {meeting: known[meeting] for meeting in meetings}
+
+    def _ids(self, meetings: Iterable[Meeting]) -> Iterator[tuple[int, ...]]:
+        """Yield the ids of the genomes of each meeting."""
+        ids = [[member.id for member in population.members] for population in self.populations]
+        return (tuple(map(list.__getitem__, ids, meeting)) for meeting in meetings)
 
     @contextlib.contextmanager
     def _naming_individuals(self, meetings: Sequence[Meeting]) -> Iterator[None]:
@@ -229,10 +242,9 @@ class Coevolution:
             raise attrs.evolve(error, concerns="; ".join(names)) from error
 
     def _pairs(self, scores: Mapping[Meeting, Score]) -> tuple[Pair, ...]:
-        ids = [[member.id for member in population.members] for population in self.populations]
         return tuple(
-            Pair(tuple(map(list.__getitem__, ids, meeting)), score.value, score.diverged_at)
-            for meeting, score in scores.items()
+            Pair(ids, score.value, score.diverged_at)
+            for ids, score in zip(self._ids(scores), scores.values(), strict=True)
         )
 
     def _best_pair(self, scores: Mapping[Meeting, Score]) -> BestPair | None:
