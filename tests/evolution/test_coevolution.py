@@ -51,9 +51,29 @@ def test_designs_with_the_same_first_member_are_simulated_in_sequence(toy_config
 
     coevolution = assemble(toy_config())
     coevolution.evaluator.simulator = Noting()
-    for turn in coevolution:
-        assert len([a for a, _ in itertools.groupby(asked)]) == len({pair.genomes[0] for pair in turn.pairs})
+    for _ in coevolution:
+        groups = [a for a, _ in itertools.groupby(asked)]
+        assert len(groups) == len(set(groups))
         asked.clear()
+
+
+def test_pairs_that_met_in_the_last_turn_are_not_decoded_again(
+    toy_config: Load, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decoded: list[float] = []
+    decode = toys.Number.decode
+
+    def counted(self: toys.Number, network: Any, design: Design) -> Design:
+        decoded.extend([1.0] * (self.role == "b"))
+        return decode(self, network, design)
+
+    monkeypatch.setattr(toys.Number, "decode", counted)
+    met: set[tuple[int, ...]] = set()
+    for turn in assemble(toy_config()):
+        pairs = {pair.genomes for pair in turn.pairs}
+        assert len(decoded) - (turn.best_pair is not None) == len(pairs - met)
+        met = pairs
+        decoded.clear()
 
 
 def test_populations_take_turns_in_order(toy_config: Load) -> None:
@@ -139,6 +159,49 @@ def test_two_loops_interleaved_equal_each_alone(toy_config: Load) -> None:
     turns = [list(pair) for pair in zip(first, second, strict=True)]
     assert history([a for a, _ in turns]) == history(assemble(toy_config()))
     assert history([b for _, b in turns]) == history(assemble(toy_config("run.seed=9")))
+
+
+def test_the_next_population_breeds_while_a_turn_is_simulated(
+    toy_config: Load, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[toys.DriftRun] = []
+    ask = toys.DriftRun.ask
+
+    def noted(self: toys.DriftRun) -> Any:
+        asked.append(self)
+        return ask(self)
+
+    monkeypatch.setattr(toys.DriftRun, "ask", noted)
+    coevolution = assemble(toy_config())
+    a, b = (population.evolver for population in coevolution.populations)
+    after_each_turn = []
+    for _ in coevolution:
+        after_each_turn.append(list(asked))
+        asked.clear()
+    assert after_each_turn == [[a, b], [a, b], [a], [b], [a], [b], [a], [b], []]
+
+
+def test_the_state_is_that_before_breeding(toy_config: Load) -> None:
+    states: list[Any] = []
+    for coevolution in (bred := assemble(toy_config()), assemble(toy_config("run.generations=1"))):
+        turns = iter(coevolution)
+        for _ in range(3):
+            next(turns)
+        states.append(coevolution.state())
+    assert bred.populations[0].evolver.state() != states[0]["population/a"]["evolver"]
+    assert states[0] == states[1]  # with one generation, no population breeds in the last turn
+
+
+def test_meanwhile_sees_the_state_of_the_turn_before(toy_config: Load) -> None:
+    coevolution = assemble(toy_config())
+    seen: list[Any] = []
+    expected: list[Any] = []
+    for turn in coevolution:
+        if turn.index < coevolution.length:
+            unchanged = "ab"[(turn.index + 1) % 2]  # the next turn is that of the other population
+            expected.append(coevolution.state([unchanged]))
+            coevolution.meanwhile = lambda name=unchanged: seen.append(coevolution.state([name]))  # type: ignore[misc]
+    assert seen == expected
 
 
 @pytest.mark.parametrize("at", range(9))

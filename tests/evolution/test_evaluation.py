@@ -68,6 +68,20 @@ def test_every_design_gets_its_score_and_none_is_simulated_twice(
     scorer.close()
 
 
+def test_the_key_of_a_repeated_object_is_computed_once() -> None:
+    asked = []
+
+    class Noting(Counting):
+        def key(self, given: Design, record: Record) -> bytes:
+            asked.append(given)
+            return super().key(given, record)
+
+    one, equal = design(1, 2), design(1, 2)
+    scores = evaluator(Noting()).evaluate([one, equal, one], 3)
+    assert [score.value for score in scores] == [2.0, 2.0, 2.0]
+    assert asked == [one, equal]  # designs are compared by identity
+
+
 def test_designs_are_decoded_while_others_are_simulated() -> None:
     started = threading.Event()
 
@@ -105,8 +119,47 @@ def test_batches_keep_the_order_and_shrink_towards_the_end(count: int, workers: 
     sizes = [len(batch) for batch in batches]
     assert [a for batch in batches for a in batch] == list(range(count))
     assert sizes == sorted(sizes, reverse=True)
-    assert max(sizes, default=1) <= 4
+    assert max(sizes, default=1) <= 8
     assert sizes[-1:] in ([], [1])
+
+
+class TestMeanwhile:
+    def test_is_called_once_when_the_workers_have_enough_to_simulate(self) -> None:
+        made, seen = [], []
+
+        def designs() -> Iterator[Design]:
+            for a in range(100):
+                made.append(a)
+                yield design(a, 1)
+
+        scorer = evaluator(Counting(), workers=2)
+        scores = scorer.evaluate(designs(), 100, lambda: seen.append(len(made)))
+        scorer.close()
+        assert seen == [2 * 8]  # two batches for the other worker
+        assert [score.value for score in scores] == list(range(100))
+
+    @pytest.mark.parametrize("workers", [1, 3])
+    def test_is_called_without_anything_to_simulate(self, workers: int) -> None:
+        called: list[None] = []
+        scorer = evaluator(Counting(), workers)
+        scorer.evaluate([design(1, 1)], 1)
+        for designs in ([], [design(1, 1)]):
+            scorer.evaluate(designs, len(designs), lambda: called.append(None))
+        scorer.close()
+        assert len(called) == 2
+
+    @pytest.mark.parametrize("error", [ValueError("full"), SystemExit("full"), KeyboardInterrupt()])
+    def test_its_exception_is_not_attributed_to_a_component(self, error: BaseException) -> None:
+        def fail() -> None:
+            raise error
+
+        counting = Counting()
+        scorer = evaluator(counting, workers=2)
+        with pytest.raises(type(error)) as caught:
+            scorer.evaluate((design(a, 1) for a in range(100)), 100, fail)
+        assert caught.value is error
+        assert len(counting.simulated) <= 2 * 8
+        scorer.close()
 
 
 def test_a_diverged_simulation_has_a_step_and_no_value() -> None:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 import toys
 from hypothesis import given, strategies as st
+from numpy.typing import NDArray
 
-from evoframe import Design, Member, PopulationReport, RunError, StructureError
+from evoframe import Design, Member, Network, PopulationReport, RunError, StructureError
 from evoframe.errors import ComponentError
 from evoframe.evolution.population import Population
 
@@ -110,6 +111,73 @@ class TestReproduction:
             population.reproduce()
         assert caught.value.component == "populations.a.evolver"
         assert population.generation == 0
+
+
+class TestBreeding:
+    def test_changes_nothing_until_reproduction(self) -> None:
+        population, alone = new_population(), new_population()
+        for each in (population, alone):
+            each.judge([1.0, 2.0, 3.0, 4.0], None)
+        population.breed()
+        assert (population.generation, population.genomes) == (0, alone.genomes)
+        assert population.members == alone.members
+        assert population.state() == alone.state()
+        for each in (population, alone):
+            each.reproduce()
+        assert (population.generation, population.genomes) == (1, alone.genomes)
+        assert population.members == alone.members
+        for each in (population, alone):
+            each.judge([1.0, 2.0, 3.0, 4.0], None)
+        assert population.state() == alone.state()
+
+    def test_is_discarded_when_a_state_is_restored(self) -> None:
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        state = json.loads(json.dumps(population.state()))
+        population.breed()
+        population.restore(state)
+        assert population.state() == state
+        population.reproduce()
+        assert population.generation == 1
+
+
+class TestNetwork:
+    def test_evaluates_the_same_read_only_points_once(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        evaluated = counted_evaluations(monkeypatch)
+        network, points = new_population().network(3), np.ones((2, 1))
+        points.setflags(write=False)
+        values = network(points)
+        assert network(points) is values
+        assert not values.flags.writeable  # an encoder that changed them would change all other bodies
+        assert len(evaluated) == 1
+
+    def test_evaluates_other_points_and_those_that_can_change_again(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        evaluated = counted_evaluations(monkeypatch)
+        network, points = new_population().network(3), np.ones((2, 1))
+        points.setflags(write=False)
+        changing = np.ones((2, 1))
+        for asked in (points, changing, changing, points.copy(), points):
+            network(asked)
+        assert len(evaluated) == 4
+        changing[0] = 2.0
+        assert network(changing).tolist() == [[2.0 * network(points)[0, 0]], [network(points)[0, 0]]]
+
+
+def counted_evaluations(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Return a list that receives the points of each evaluation of a network."""
+    evaluated: list[Any] = []
+
+    def express(_: Any, genome: float) -> Network:
+        def network(points: NDArray[np.float64]) -> NDArray[np.float64]:
+            evaluated.append(points)
+            return points * genome
+
+        return network
+
+    monkeypatch.setattr(toys.DriftRun, "express", express)
+    return evaluated
 
 
 class TestDecoding:

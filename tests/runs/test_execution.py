@@ -180,6 +180,40 @@ def test_a_stopped_run_keeps_all_turns_and_is_not_finished(toy_config: Load, tmp
     assert stopped.summary() == {}
 
 
+def test_a_turn_is_saved_before_the_next_one_is_simulated(
+    toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With one worker; others simulate meanwhile."""
+    simulate = toys.Product.simulate
+    saved: list[int] = []
+
+    def noting(self: toys.Product, *arguments: Any) -> Any:
+        saved.append(len(rows(tmp_path / "run", "workload")))
+        return simulate(self, *arguments)
+
+    monkeypatch.setattr(toys.Product, "simulate", noting)
+    finished = run(toy_config(), out=tmp_path / "run")
+    simulated = [row["turn"] for row in finished.workload() if row["simulations"]]
+    assert list(dict.fromkeys(saved)) == simulated
+
+
+def test_a_turn_is_saved_if_the_next_one_fails_at_once(
+    toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    select = toys.First.select
+    calls: list[None] = []
+
+    def failing(self: toys.First, *arguments: Any) -> Any:
+        calls.append(None)
+        return select(self, *arguments) if len(calls) < 4 else "ab"
+
+    monkeypatch.setattr(toys.First, "select", failing)
+    with pytest.raises(ComponentError, match=r"turn 4"):
+        run(toy_config(), out=tmp_path / "run")
+    saved = load_run(tmp_path / "run")
+    assert max(row["turn"] for row in saved.turns()) == max(row["turn"] for row in saved.table("state")) == 3
+
+
 def test_a_turn_and_its_state_are_saved_together_or_not_at_all(
     toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

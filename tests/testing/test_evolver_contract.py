@@ -19,6 +19,7 @@ KEEPS_SIZE = "test_the_population_keeps_its_size"
 UNIQUE = "test_ids_are_unique"
 ONE_GENOME = "test_an_id_stands_for_one_genome"
 GENOMES = "test_genomes_are_those_of_the_last_ask"
+OUTLIVE = "test_genomes_outlive_the_next_ask"
 MEMBERS = "test_members_have_the_fitness_of_tell_in_order"
 NUMBER = "test_a_wrong_number_of_values_is_refused"
 NOT_FINITE = "test_fitness_that_is_not_finite_is_refused"
@@ -196,6 +197,17 @@ class GenomesByFitness(Climbing):
         if fitness is None:
             return self.population
         return [self.population[i] for i in sorted(range(self.size), key=lambda i: -fitness[i])]
+
+
+class Overwrites(Climbing):
+    """Stores children in the place of the genomes that they replace."""
+
+    def next_generation(self, elite: list[Genome]) -> list[Genome]:
+        children = super().next_generation(elite)[len(elite) :]
+        replaced = [genome for genome in self.population if genome not in elite]
+        for genome, child in zip(replaced, children, strict=True):
+            genome.update(child)
+        return elite + replaced
 
 
 class GenomesOnlyOnce(Climbing):
@@ -376,6 +388,7 @@ class NoDump:
         (IdsByPosition, ONE_GENOME),
         (GenomesByFitness, GENOMES),
         (GenomesOnlyOnce, RESTORED),
+        (Overwrites, OUTLIVE),
         (MembersByFitness, MEMBERS),
         (FitnessFromTheStart, MEMBERS),
         (AcceptsAnyNumber, NUMBER),

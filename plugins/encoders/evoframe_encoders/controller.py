@@ -20,18 +20,26 @@ _LARGEST_OFFSET = 2.0 * math.pi
 
 @lru_cache(maxsize=8)
 def _points(canvas: Canvas, normalized: bool) -> NDArray[np.float64]:
-    """Return the network's inputs for each voxel as if it were contractile, ``float64[X * Y * Z, 4]``."""
-    points = voxel_points(canvas, normalized).reshape(-1, 3)
-    return np.concatenate([points, np.full((len(points), 1), float(CONTRACTILE))], axis=1)
+    """Return the network's inputs for each voxel as if it were contractile, ``float64[X * Y * Z, 4]``.
+
+    It is read-only, so that the core evaluates a network only once for all bodies.
+    """
+    coordinates = voxel_points(canvas, normalized).reshape(-1, 3)
+    points = np.insert(coordinates, 3, float(CONTRACTILE), axis=1)
+    points.setflags(write=False)
+    return points
 
 
 @attrs.frozen
 class CppnController:
-    """Phase offsets from a network that is evaluated at each contractile voxel of a body.
+    """Phase offsets from a network that is evaluated at the contractile voxels of a body.
 
     The network's inputs are the coordinates and the material code of a voxel, which is 3 for all contractile
     voxels; its output is clamped to +-2 pi. Empty and passive voxels have the offset 0, which does not affect
     simulations, since they do not contract.
+
+    The network is evaluated at all voxels of the canvas, so that one evaluation is enough for all bodies with
+    which it is paired.
 
     Attributes:
         normalized_coordinates: Whether the input coordinates run from -1 to 1 along each axis of the canvas;
@@ -66,9 +74,8 @@ class CppnController:
     def decode(self, network: Network, design: Design) -> Design:
         """Return *design* with the phase offsets that *network* gives for its body."""
         body = design.roles[MORPHOLOGY]
-        contractile = np.flatnonzero(body == CONTRACTILE)
-        points = _points(body.shape, self.normalized_coordinates).take(contractile, axis=0)
-        offsets = np.zeros(body.shape)
-        offsets.put(contractile, network(points)[:, 0].clip(-_LARGEST_OFFSET, _LARGEST_OFFSET))
+        everywhere = network(_points(body.shape, self.normalized_coordinates)).reshape(body.shape)
+        clamped = everywhere.clip(-_LARGEST_OFFSET, _LARGEST_OFFSET)
+        offsets = np.where(body == CONTRACTILE, clamped, 0.0)
         offsets.setflags(write=False)
         return design.with_role(CONTROLLER, offsets)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import random
+from random import Random
 from typing import Any, Literal
 
 import attrs
@@ -69,14 +69,14 @@ class RandomSearchRun(NetworkRun):
 
     def _draw_all(self) -> dict[int, Any]:
         self._pool.tracker.reset_generation()
-        with self._pool.stream.swapped_in():
-            genomes = [self._draw() for _ in range(self._size)]
+        with self._pool.stream.swapped_in() as stream:
+            genomes = [self._draw(stream) for _ in range(self._size)]
         return {genome.key: genome for genome in genomes}
 
-    def _draw(self) -> Any:
+    def _draw(self, stream: Random) -> Any:
         genome = neat.DefaultGenome(next(self._pool.genome_ids))
         genome.configure_new(self._pool.config.genome_config)
-        times = random.randint(0, self._mutations) if self._mutations else 0  # noqa: S311 - of the private stream
+        times = stream.randint(0, self._mutations) if self._mutations else 0
         for _ in range(times):
             genome.mutate(self._pool.config.genome_config)
         return genome

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
-
 from evoframe.errors import ComponentError, EvoframeError
 
 __all__ = ["blaming"]
 
 
-@contextlib.contextmanager
-def blaming(component: str, concerns: str = "") -> Iterator[None]:
-    """Wrap exceptions raised by a component in :class:`ComponentError`.
+class blaming:  # noqa: N801 - used as a statement, like contextlib.suppress
+    """Wrap exceptions raised by a component in :class:`ComponentError`; a context manager.
 
     Errors of evoframe are not wrapped: they already name their cause.
 
@@ -24,9 +20,16 @@ def blaming(component: str, concerns: str = "") -> Iterator[None]:
     Raises:
         ComponentError: The component raised an exception.
     """
-    try:
-        yield
-    except EvoframeError:
-        raise
-    except (Exception, SystemExit) as error:
-        raise ComponentError(component, f"{type(error).__name__}: {error}", concerns) from error
+
+    __slots__ = ("_component", "_concerns")
+
+    def __init__(self, component: str, concerns: str = "") -> None:
+        self._component = component
+        self._concerns = concerns
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, _type: object, error: BaseException | None, _traceback: object) -> None:
+        if isinstance(error, (Exception, SystemExit)) and not isinstance(error, EvoframeError):
+            problem = f"{type(error).__name__}: {error}"
+            raise ComponentError(self._component, problem, self._concerns) from error

@@ -86,6 +86,9 @@ class Encoder(Protocol):
 
     Laws: roles, shapes and dtypes are as declared; decoding is pure, and total: every network gives a design.
 
+    In a run, a network that is called again with the same read-only array returns the same values, also
+    read-only, without evaluating them again.
+
     It may offer :class:`~evoframe.SupportsInputNames` and :class:`~evoframe.SupportsOutputNames`.
     """
 
@@ -117,7 +120,11 @@ class EvolverRun(Protocol):
     """
 
     def ask(self) -> Sequence[Any]:
-        """Return the genomes to evaluate: the initial ones, or after :meth:`tell` their offspring."""
+        """Return the genomes to evaluate: the initial ones, or after :meth:`tell` their offspring.
+
+        The core can call it while another population is evaluated, so genomes of the call before can still be
+        in use, and must not change.
+        """
 
     def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
         """Receive the *fitness* (``float64[n]``, finite, maximized) of the genomes of the last :meth:`ask`.

@@ -19,7 +19,6 @@ from evoframe.contract import (
     Aggregator,
     BestPair,
     CollaborationStrategy,
-    Design,
     Pair,
     Score,
     Scores,
@@ -29,13 +28,11 @@ from evoframe.contract import (
 )
 from evoframe.documents import structure
 from evoframe.errors import ComponentError
+from evoframe.evolution.decoding import Meeting, decoded_designs
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.population import Population
 
 __all__ = ["Coevolution", "first_meetings"]
-
-Meeting: TypeAlias = tuple[int, ...]
-"""One position in each population: the members of a pair."""
 
 Fold: TypeAlias = Callable[[Scores], float]
 
@@ -58,6 +55,8 @@ class Coevolution:
         aggregator: Aggregates the scores of an individual into its fitness.
         evaluator: Scores designs.
         generations: Generations per population.
+        meanwhile: Called in each turn while the workers simulate, to complete what concerns the turn before.
+            The populations are those of that turn, except the one that has reproduced since.
         turn: Index of the latest turn; -1 before the first.
         best_score: Best score of a pair so far.
     """
@@ -67,9 +66,11 @@ class Coevolution:
     aggregator: Aggregator
     evaluator: Evaluator
     generations: int
+    meanwhile: Callable[[], None] = attrs.field(default=lambda: None, init=False)
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
     _fittest_have_met: bool = attrs.field(default=False, init=False)
+    _latest: dict[tuple[int, ...], Score] = attrs.field(factory=dict, init=False)
 
     @property
     def length(self) -> int:
@@ -98,8 +99,8 @@ class Coevolution:
 
     def fittest_pair(self) -> Pair:
         """Return the fittest of each population as a pair; after the last turn, its score is known."""
-        meeting = self._fittest()
-        return self._pair(meeting, self._scores([meeting])[meeting])
+        [pair] = self._pairs(self._scores([self._fittest()]))
+        return pair
 
     def state(self, changed: Collection[str] | None = None) -> dict[str, Any]:
         """Return everything needed to continue after the latest turn, as JSON values.
@@ -122,6 +123,7 @@ class Coevolution:
         loop = structure(state["loop"], _Loop, ("loop",))
         self.turn, self.best_score = loop.turn, loop.best_score
         self._fittest_have_met = loop.fittest_have_met
+        self._latest = {}
         for population in self.populations:
             population.restore(state[f"population/{population.name}"])
 
@@ -172,15 +174,17 @@ class Coevolution:
     ) -> Turn:
         """Score the unique *meetings* of a turn, and set the fitness of the *judged* populations."""
         simulated = self.evaluator.simulations
-        scores = self._scores(meetings)
+        scores = self._scores(meetings, self._use_time_of_simulations)
         for index in judged:
             self._judge(index, scores, fold)
+        pairs = self._pairs(scores)
+        self._latest = {pair.genomes: score for pair, score in zip(pairs, scores.values(), strict=True)}
         self.turn += 1
         self._fittest_have_met = self._fittest() in scores
         return Turn(
             index=self.turn,
             reports=tuple(self.populations[index].report() for index in judged),
-            pairs=tuple(self._pair(meeting, score) for meeting, score in scores.items()),
+            pairs=pairs,
             best_pair=self._best_pair(scores),
             workload=Workload(
                 pairs=len(scores),
@@ -188,6 +192,12 @@ class Coevolution:
                 seconds=time.perf_counter() - started,
             ),
         )
+
+    def _use_time_of_simulations(self) -> None:
+        """Complete what concerns the turn before, and breed the population that reproduces in the next."""
+        self.meanwhile()
+        if 0 <= self.turn < self.length - 1:
+            self.populations[(self.turn + 1) % len(self.populations)].breed()
 
     def _judge(self, index: int, scores: Mapping[Meeting, Score], fold: Fold) -> None:
         """Set the fitness of each member of a population to the *fold* of the scores of its meetings."""
@@ -199,23 +209,25 @@ class Coevolution:
         fitness = [_fitness(row, fold, population.called(i)) for i, row in enumerate(rows)]
         population.judge(fitness, floor)
 
-    def _scores(self, meetings: Collection[Meeting]) -> dict[Meeting, Score]:
-        """Score unique meetings, sorted so that designs with the same first members share a batch."""
-        together = sorted(meetings)
-        with self._naming_individuals(together):
-            scores = self.evaluator.evaluate(self._designs(together), len(together))
-        by_meeting = dict(zip(together, scores, strict=True))
-        return {meeting: by_meeting[meeting] for meeting in meetings}
+    def _scores(
+        self, meetings: Collection[Meeting], meanwhile: Callable[[], None] = lambda: None
+    ) -> dict[Meeting, Score]:
+        """Return the scores of unique meetings; pairs of the latest turn are not evaluated again."""
+        latest = self._latest  # an id stands for one genome
+        pairs = zip(meetings, self._ids(meetings), strict=True)
+        known = {meeting: latest[ids] for meeting, ids in pairs if ids in latest}
+        # Sorted, so that designs with the same first members share a batch.
+        unknown = sorted(set(meetings) - known.keys())
+        with self._naming_individuals(unknown):
+            designs = decoded_designs(self.populations, unknown)
+            scores = self.evaluator.evaluate(designs, len(unknown), meanwhile)
+        known.update(zip(unknown, scores, strict=True))
+        return {meeting: known[meeting] for meeting in meetings}
 
-    def _designs(self, meetings: Iterable[Meeting]) -> Iterator[Design]:
-        """Decode unique meetings; the common part of those with the same first members is decoded once."""
-        decoded: dict[Meeting, Design] = {(): Design()}
-        for meeting in meetings:
-            for length, population in enumerate(self.populations, start=1):
-                shared = meeting[:length]
-                if shared not in decoded:
-                    decoded[shared] = population.decode(shared[-1], decoded[shared[:-1]])
-            yield decoded.pop(meeting)
+    def _ids(self, meetings: Iterable[Meeting]) -> Iterator[tuple[int, ...]]:
+        """Yield the ids of the genomes of each meeting."""
+        ids = [[member.id for member in population.members] for population in self.populations]
+        return (tuple(map(list.__getitem__, ids, meeting)) for meeting in meetings)
 
     @contextlib.contextmanager
     def _naming_individuals(self, meetings: Sequence[Meeting]) -> Iterator[None]:
@@ -229,12 +241,11 @@ class Coevolution:
             names = (" with ".join(p.called(position) for p, position in pairs) for pairs in met)
             raise attrs.evolve(error, concerns="; ".join(names)) from error
 
-    def _pair(self, meeting: Meeting, score: Score) -> Pair:
-        ids = tuple(
-            population.members[position].id
-            for population, position in zip(self.populations, meeting, strict=True)
+    def _pairs(self, scores: Mapping[Meeting, Score]) -> tuple[Pair, ...]:
+        return tuple(
+            Pair(ids, score.value, score.diverged_at)
+            for ids, score in zip(self._ids(scores), scores.values(), strict=True)
         )
-        return Pair(ids, score.value, score.diverged_at)
 
     def _best_pair(self, scores: Mapping[Meeting, Score]) -> BestPair | None:
         """Return the best pair of this turn if it exceeds all earlier ones; the earliest wins ties."""
@@ -244,7 +255,7 @@ class Coevolution:
                 self.best_score, best = score.value, meeting
         if best is None or self.best_score is None:
             return None
-        [design] = self._designs([best])
+        [design] = decoded_designs(self.populations, [best])
         chosen = list(zip(self.populations, best, strict=True))
         return BestPair(
             turn=self.turn,

@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import math
 import numbers
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+from typing import TypeVar
 
 import attrs
 import numpy as np
@@ -25,7 +27,9 @@ from evoframe.errors import ComponentError, WorkerError
 
 __all__ = ["Evaluator", "score_designs"]
 
-_LARGEST_BATCH = 4  # designs; they share the overhead of a call and the preparation of a common body
+T = TypeVar("T")
+
+_LARGEST_BATCH = 8  # designs; they share the overhead of a call and the preparation of a common body
 _BATCHES_PER_WORKER = 2  # batches shrink towards the end, so that all workers finish together
 
 
@@ -46,22 +50,29 @@ class Evaluator:
     simulations: int = 0
     _cache: dict[bytes, Score] = attrs.field(factory=dict, init=False, repr=False)
 
-    def evaluate(self, designs: Iterable[Design], count: int) -> list[Score]:
+    def evaluate(
+        self, designs: Iterable[Design], count: int, meanwhile: Callable[[], None] = lambda: None
+    ) -> list[Score]:
         """Return the score of each design; equal designs are simulated once, across all calls.
 
         Args:
             designs: The designs, consumed one by one while earlier ones are simulated.
             count: Number of designs.
+            meanwhile: Called once in this thread, when the workers have enough to simulate. If it raises, no
+                further designs are simulated, and the exception propagates.
 
         Raises:
             ComponentError: A component failed or returned an invalid result.
         """
         keys: list[bytes] = []
+        interlude = _Interlude(meanwhile)
         with blaming("executor"), _locating_designs(keys):
             simulation = _Simulation(self.simulator, self.objective)
-            for scores in self.workers.map(simulation, self._batches(designs, count, keys)):
+            batches = interlude.inserted(self._batches(designs, count, keys), self._batches_ahead)
+            for scores in self.workers.map(simulation, batches):
                 self._cache |= scores
                 self.simulations += len(scores)
+        interlude.check()
         if any(key not in self._cache for key in keys):
             raise ComponentError("executor", "did not return the results of all batches")
         return [self._cache[key] for key in keys]
@@ -75,18 +86,26 @@ class Evaluator:
     ) -> Iterator[dict[bytes, Design]]:
         """Yield batches of the designs to simulate; append the key of every design to *keys*."""
         record = self.objective.record
+        key_of: dict[Design, bytes] = {}  # designs are compared by identity
         known: set[bytes] = set()
         batch: dict[bytes, Design] = {}
         for design in designs:
-            keys.append(key := self._key(design, record))
+            if design not in key_of:
+                key_of[design] = self._key(design, record)
+            keys.append(key := key_of[design])
             if key not in known and key not in self._cache:
                 known.add(key)
                 batch[key] = design
-            if len(batch) >= self._batch_size(count - len(keys)):
+            if batch and len(batch) >= self._batch_size(count - len(keys)):
                 yield batch
                 batch = {}
         if batch:
             yield batch
+
+    @property
+    def _batches_ahead(self) -> int:
+        """Number of batches for the other workers; executors do not wait for results before it."""
+        return _BATCHES_PER_WORKER * (self.workers.workers - 1)
 
     def _batch_size(self, left: int) -> int:
         return min(max(1, left // (_BATCHES_PER_WORKER * self.workers.workers)), _LARGEST_BATCH)
@@ -97,6 +116,29 @@ class Evaluator:
         if not isinstance(key, bytes):
             raise ComponentError("simulator", f"returned a key of type {type(key).__name__}, expected bytes")
         return key
+
+
+@attrs.define
+class _Interlude:
+    """An action of the calling thread while the workers simulate; its exceptions are not the executor's."""
+
+    _action: Callable[[], None]
+    _error: BaseException | None = None
+
+    def inserted(self, batches: Iterator[T], ahead: int) -> Iterator[T]:
+        """Yield *batches*; act when *ahead* of them, or all, were taken."""
+        yield from islice(batches, ahead)
+        try:
+            self._action()
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - raised by check()
+            self._error = error
+        else:
+            yield from batches
+
+    def check(self) -> None:
+        """Raise the exception of the action, if any."""
+        if self._error is not None:
+            raise self._error
 
 
 @contextlib.contextmanager

@@ -19,6 +19,9 @@ from evoframe.files import json_text
 
 __all__ = ["Population"]
 
+_PLAIN = {(int, int, int, int), (int, int, int, type(None))}
+"""Types of the id, the size, the age and the species of a member that need no conversion."""
+
 
 @attrs.define
 class Population:
@@ -42,14 +45,30 @@ class Population:
     genomes: Sequence[Any] = ()
     members: tuple[Member, ...] = ()
     _networks: dict[int, Network] = attrs.field(factory=dict, init=False)
+    _offspring: tuple[Sequence[Any], tuple[Member, ...]] | None = attrs.field(default=None, init=False)
+    _state: dict[str, Any] | None = attrs.field(default=None, init=False)
     _best_so_far: float | None = attrs.field(default=None, init=False)
     _lowest: float | None = attrs.field(default=None, init=False)
     _champion: Member | None = attrs.field(default=None, init=False)
 
     def reproduce(self) -> None:
         """Replace the genomes with the next generation; first, with the initial one."""
+        self.genomes, self.members = self._offspring or self._next_generation()
+        self.generation += 1
+        self._offspring = self._state = None
+        self._networks.clear()
+
+    def breed(self) -> None:
+        """Have the evolver create the next generation before :meth:`reproduce` is called.
+
+        Until then, the genomes, the members and :meth:`state` are those of the current generation.
+        """
+        self.state()  # which the evolver cannot return later
+        self._offspring = self._next_generation()
+
+    def _next_generation(self) -> tuple[Sequence[Any], tuple[Member, ...]]:
         with blaming(self._evolver):
-            genomes = self.evolver.ask()
+            genomes = list(self.evolver.ask())
             members = tuple(self._plain(member) for member in self.evolver.members())
             counts = len(genomes), len(members)
         if counts[0] < 1 or counts[0] != counts[1] or counts[0] != (len(self.genomes) or counts[0]):
@@ -57,15 +76,13 @@ class Population:
             raise ComponentError(
                 self._evolver, f"returned {counts[0]} genomes and {counts[1]} members{wanted}"
             )
-        self.genomes, self.members = genomes, members
-        self.generation += 1
-        self._networks.clear()
+        return genomes, members
 
     def network(self, position: int) -> Network:
         """Return the network that the genome at *position* expresses."""
         if position not in self._networks:
             with blaming(self._evolver, self.called(position)):
-                self._networks[position] = self.evolver.express(self.genomes[position])
+                self._networks[position] = _Remembering(self.evolver.express(self.genomes[position]))
         return self._networks[position]
 
     def dump(self, position: int) -> Any:
@@ -125,6 +142,7 @@ class Population:
                 "check the simulator's options (time step, stiffness, density)"
             )
         self._lowest = lowest if self._lowest is None else min(lowest, self._lowest)
+        self._state = None
         complete = np.array([lowest if value is None else value for value in fitness])
         with blaming(self._evolver):
             self.evolver.tell(complete, {})
@@ -158,17 +176,19 @@ class Population:
 
     def state(self) -> dict[str, Any]:
         """Return everything needed to continue, as JSON values."""
-        with blaming(self._evolver):
-            evolver = self.evolver.state()
-        return {
-            "evolver": evolver,
-            "rng": self.rng.bit_generator.state,
-            "generation": self.generation,
-            "diverged": [member.diverged for member in self.members],
-            "best_so_far": self._best_so_far,
-            "lowest": self._lowest,
-            "champion": attrs.asdict(self._champion) if self._champion else None,
-        }
+        if self._state is None:
+            with blaming(self._evolver):
+                evolver = self.evolver.state()
+            self._state = {
+                "evolver": evolver,
+                "rng": self.rng.bit_generator.state,
+                "generation": self.generation,
+                "diverged": [member.diverged for member in self.members],
+                "best_so_far": self._best_so_far,
+                "lowest": self._lowest,
+                "champion": attrs.asdict(self._champion) if self._champion else None,
+            }
+        return self._state
 
     def restore(self, state: Any) -> None:
         """Continue from the result of :meth:`state`.
@@ -182,6 +202,7 @@ class Population:
         self.rng.bit_generator.state = saved.rng
         self.generation = saved.generation
         self.genomes = self.evolver.genomes()
+        self._offspring = self._state = None
         self._networks.clear()
         self.members = tuple(
             attrs.evolve(member, diverged=diverged)
@@ -199,6 +220,8 @@ class Population:
     def _plain(self, member: Member) -> Member:
         """Return *member* with Python integers, which the record requires."""
         given = (member.id, member.genome_size, member.age)
+        if (*map(type, given), type(member.species)) in _PLAIN:
+            return member
         wrong = [value for value in given if not isinstance(value, numbers.Integral)]
         if not isinstance(member.species, numbers.Integral | None):
             wrong.append(member.species)
@@ -218,6 +241,29 @@ class Population:
             self._champion = latest.get(self._champion.id, self._champion)
         if self._champion is None or _rank(best) > _rank(self._champion):
             self._champion = best
+
+
+@attrs.define
+class _Remembering:
+    """A network that remembers its values for the latest read-only points.
+
+    An encoder that evaluates the whole canvas for each body thus computes the same values only once.
+    """
+
+    _network: Network
+    _points: NDArray[np.float64] | None = None
+    _values: NDArray[np.float64] = attrs.field(factory=lambda: np.empty(0))
+
+    def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        if points is self._points:
+            return self._values
+        values = self._network(points)
+        if points.flags.writeable:
+            return values
+        values = values.copy()  # the network may use its array again
+        values.setflags(write=False)
+        self._points, self._values = points, values
+        return values
 
 
 @attrs.frozen

@@ -8,7 +8,8 @@ import os
 import re
 import stat
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,9 @@ Functions that recurse into a document need a few frames for each, of the thousa
 
 TOO_DEEP = f"lists and tables are nested more than {DEEPEST} deep"
 """The problem of a document that :func:`is_too_deep`."""
+
+_NESTINGS = (dict, list, tuple)
+_SCALARS = frozenset({bool, float, int, str, type(None)})
 
 _KEY = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{DEEPEST}}}")
@@ -153,14 +157,23 @@ def parsed_toml(text: str, origin: str, error_type: type[EvoframeError] = InputE
 
 def is_too_deep(document: Any) -> bool:
     """Return whether lists and tables are nested deeper than :data:`DEEPEST`, or contain themselves."""
-    level = [document] if isinstance(document, dict | list | tuple) else []
+    level = _nested([document])
     for _ in range(DEEPEST):
         if not level:
             return False
-        inner = [value.values() if isinstance(value, dict) else value for value in level]
-        items = (item for values in inner for item in values if isinstance(item, dict | list | tuple))
-        level = list({id(item): item for item in items}.values())  # one that is shared counts once
+        level = _nested(chain.from_iterable(map(_values, level)))
     return bool(level)
+
+
+def _values(nesting: Any) -> Iterable[Any]:
+    return nesting.values() if isinstance(nesting, dict) else nesting
+
+
+def _nested(values: Iterable[Any]) -> list[Any]:
+    """Return the lists and tables among *values*; one that is shared counts once."""
+    # Most values are scalars, whose exact types are the fastest to recognize.
+    nestings = (value for value in values if type(value) not in _SCALARS and isinstance(value, _NESTINGS))
+    return list({id(nesting): nesting for nesting in nestings}.values())
 
 
 def is_directory(path: Path) -> bool:

@@ -201,7 +201,7 @@ class Store:
 
     def _insert(self, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
         """Append rows to an append-only table, in the order of their keys."""
-        listed = [tuple(map(_signless, row)) for row in rows]
+        listed = [tuple(_as_stored(row)) for row in rows]
         if listed:
             self._write("INSERT", table, listed)
             self._keep(table, listed)
@@ -258,9 +258,9 @@ class Store:
             self._synced = time.monotonic()
 
 
-def _signless(value: Any) -> Any:
-    """Return a value as SQLite stores it, which drops the sign of zero."""
-    return value + 0.0 if isinstance(value, float) else value
+def _as_stored(row: tuple[Any, ...]) -> list[Any]:
+    """Return the values of a row as SQLite stores them: it drops the sign of zero."""
+    return [value + 0.0 if isinstance(value, float) else value for value in row]
 
 
 def _state(part: str, values: Any) -> str:

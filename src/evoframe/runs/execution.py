@@ -76,14 +76,16 @@ class Execution:
         return verify_champion(self.config, run)
 
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
-        unit = unit_of(self.config.objective.component)
-        for turn in self._coevolution:
-            changed = [report.population for report in turn.reports]
-            self._store.save(turn, self._coevolution.state(changed))
-            _log_turn(turn, unit)
-            observers.tell("evoframe_turn_finished", turn=turn)
-            if stop():
-                break
+        saving = _Saving(self._store, observers, unit_of(self.config.objective.component))
+        self._coevolution.meanwhile = saving.complete
+        try:
+            for turn in self._coevolution:
+                changed = [report.population for report in turn.reports]
+                saving.begin(turn, self._coevolution.state(changed))
+                if stop():
+                    break
+        finally:
+            saving.complete()
         if self._coevolution.finished:
             self._store.finish(_final_figures(self._coevolution))
         else:
@@ -112,6 +114,35 @@ class Execution:
         turn = f"turn {self._store.last_turn + 1}"
         concerns = ", ".join(part for part in (turn, error.concerns) if part)
         return attrs.evolve(error, offered=f"'{chosen.name}' (plugin {chosen.source})", concerns=concerns)
+
+
+@attrs.define
+class _Saving:
+    """The saving of turns, each while the next one is simulated.
+
+    A kill in between loses a turn that is complete, and a resumed run repeats it.
+    """
+
+    _store: Store
+    _observers: Observers
+    _unit: str
+    _unsaved: tuple[Turn, Mapping[str, Any]] | None = None
+
+    def begin(self, turn: Turn, state: Mapping[str, Any]) -> None:
+        """Take over a turn and the *state* after it."""
+        self._unsaved = turn, state
+        if len(turn.reports) > 1:  # the next population to reproduce could change its part of the state
+            self.complete()
+
+    def complete(self) -> None:
+        """Save the turn unless it is saved, and report it to the observers."""
+        if self._unsaved is None:
+            return
+        turn, state = self._unsaved
+        self._unsaved = None  # even if it cannot be saved
+        self._store.save(turn, state)
+        _log_turn(turn, self._unit)
+        self._observers.tell("evoframe_turn_finished", turn=turn)
 
 
 def verify_champion(config: RunConfig, run: Run) -> Verification | None:

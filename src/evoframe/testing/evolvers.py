@@ -91,6 +91,14 @@ class EvolverContract(ComponentContract[Evolver]):
                 "genomes() must equal the last ask(), also after tell()"
             )
 
+    def test_genomes_outlive_the_next_ask(self) -> None:
+        """``ask`` does not change the genomes of the call before, which can still be in use."""
+        earlier: list[Any] = []
+        dumped: list[str] = []
+        for run, genomes in self._play(self.start()):
+            assert _dumped(run, earlier) == dumped, "ask() must not change the genomes that it replaces"
+            earlier, dumped = list(genomes), _dumped(run, genomes)
+
     def test_members_have_the_fitness_of_tell_in_order(self) -> None:
         """Members have the fitness passed to ``tell``, in order; initial members have none before."""
         run = self.start()

@@ -84,15 +84,15 @@ def test_a_body_without_contractile_voxels_has_no_offsets() -> None:
     assert not offsets_of(np.ones((2, 2, 2), np.uint8), network_of(4, 1, 0, 1.0)).any()
 
 
-def test_the_inputs_are_raw_coordinates_and_the_material_code() -> None:
-    body = np.zeros((4, 3, 2), np.uint8)
-    body[3, 2, 1] = body[0, 0, 1] = 3
-    body[1, 1, 1] = 1
+def test_the_inputs_are_raw_coordinates_and_the_code_of_contractile_voxels() -> None:
     asked = []
 
     def network(points: Any) -> Any:
-        asked.append(points.tolist())
+        asked.append(points)
         return np.zeros((len(points), 1))
 
-    offsets_of(body, network)
-    assert asked == [[[0.0, 0.0, 1.0, 3.0], [3.0, 2.0, 1.0, 3.0]]]
+    for code in (0, 3):
+        offsets_of(np.full((2, 1, 2), code, np.uint8), network)
+    assert asked[0].tolist() == [[0, 0, 0, 3], [0, 0, 1, 3], [1, 0, 0, 3], [1, 0, 1, 3]]
+    assert asked[0] is asked[1]  # the core evaluates a network only once at the same read-only points
+    assert not asked[0].flags.writeable

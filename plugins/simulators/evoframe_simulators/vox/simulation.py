@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
+import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from evoframe import MORPHOLOGY, Design, InputError, Outcome, Record
 from evoframe_simulators.vox.bodies import check_codes, check_design
 from evoframe_simulators.vox.models import Canvas, clock_of, model_of, strip_body_index
+from evoframe_simulators.vox.sampling import Clock
 from evoframe_simulators.vox.settings import VoxSettings, materials_of, phase_cycles
 from evoframe_simulators.vox.tracks import FURTHER, POINTS, check_size, shape_of
 
@@ -47,24 +50,43 @@ def _on_canvas(
     settings: VoxSettings, canvas: Canvas, designs: Mapping[int, Design], record: Record
 ) -> dict[int, Outcome]:
     """Simulate designs on one canvas, in one solver call for each number of samples."""
-    clocks = {index: clock_of(settings, design.roles[MORPHOLOGY]) for index, design in designs.items()}
-    samples = {clock: clock.samples(record) for clock in set(clocks.values())}
+    taken: dict[Clock, _Samples] = {}
+    batches: dict[int, dict[int, _Samples]] = defaultdict(dict)
+    for index, design in designs.items():
+        clock = clock_of(settings, design.roles[MORPHOLOGY])
+        samples = taken.get(clock) or taken.setdefault(clock, _Samples.of(clock, record))
+        batches[len(samples.steps)][index] = samples
     tracks = tuple(track for track in (*POINTS, *FURTHER) if track in record.tracks)
     outcomes: dict[int, Outcome] = {}
-    for count in {len(taken) for taken in samples.values()}:
+    for count, batch in batches.items():
         check_size(tracks, canvas, count)
-        chosen = {index: clock for index, clock in clocks.items() if len(samples[clock]) == count}
         result = model_of(settings, canvas).simulate(
-            np.stack([designs[index].roles[MORPHOLOGY] for index in chosen]),
-            np.stack([phase_cycles(settings, designs[index]) for index in chosen]),
-            np.stack([samples[clock] for clock in chosen.values()]),
+            np.array([designs[index].roles[MORPHOLOGY] for index in batch]),
+            np.array([phase_cycles(settings, designs[index]) for index in batch]),
+            np.array([samples.steps for samples in batch.values()]),
             tracks,
         )
-        for place, (index, clock) in enumerate(chosen.items()):
+        diverged_at = result.diverged_step.tolist()
+        for place, (index, samples) in enumerate(batch.items()):
             outcomes[index] = Outcome(
-                steps=samples[clock],
-                times=samples[clock] * np.float64(clock.time_step),
+                steps=samples.steps,
+                times=samples.times,
                 tracks={name: track[place] for name, track in result.tracks.items()},
-                diverged_at=int(result.diverged_step[place]) or None,
+                diverged_at=diverged_at[place] or None,
             )
     return outcomes
+
+
+@attrs.frozen(eq=False)
+class _Samples:
+    """The samples of bodies with the same clock; their arrays are read-only."""
+
+    steps: NDArray[np.int64]
+    times: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, clock: Clock, record: Record) -> _Samples:
+        steps = clock.samples(record)
+        times = steps * np.float64(clock.time_step)
+        times.setflags(write=False)
+        return cls(steps, times)

@@ -89,12 +89,12 @@ class Vox(VoxSettings):
             InputError: The design is not a body with a controller.
         """
         check_design(design)
-        material, phase = design.roles[MORPHOLOGY], phase_cycles(self, design)
-        acting = phase[acting_codes(self).take(material)]
+        material = design.roles[MORPHOLOGY]
+        begun, acting = _begun_key(self, material.shape, material.tobytes(), record)
+        offsets = phase_cycles(self, design).take(acting)
         with np.errstate(over="ignore"):  # the solver rejects such values
-            single = acting.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
-        digest = hashlib.blake2b(_header(material.shape, record), digest_size=20)
-        digest.update(material.tobytes())
+            single = offsets.astype(np.float32) + np.float32(0)  # as the engine reads it, and without -0
+        digest = begun.copy()
         digest.update(single.tobytes())
         return digest.digest()
 
@@ -268,7 +268,12 @@ def _check_palette(material: NDArray[np.uint8], tables: Sequence[Mapping[str, An
     check_codes(material, materials_of(VoxSettings(palette=palette)))
 
 
-@functools.lru_cache(maxsize=16)
-def _header(shape: tuple[int, ...], record: Record) -> bytes:
-    """Return the part of a key that does not depend on the contents of cells."""
-    return repr((shape, record)).encode()
+@functools.lru_cache(maxsize=8)  # for bodies that are being paired with many controllers
+def _begun_key(
+    settings: VoxSettings, shape: tuple[int, ...], cells: bytes, record: Record
+) -> tuple[hashlib.blake2b, NDArray[np.intp]]:
+    """Return the digest of a body and a record, and the indices of the cells whose offsets have an effect."""
+    digest = hashlib.blake2b(repr((shape, record)).encode(), digest_size=20)
+    digest.update(cells)
+    acting = acting_codes(settings).take(np.frombuffer(cells, np.uint8))
+    return digest, np.flatnonzero(acting)

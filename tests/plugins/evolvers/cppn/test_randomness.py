@@ -3,6 +3,10 @@ import json
 import random
 import threading
 
+import neat.attributes
+import neat.genes
+import neat.genome
+import neat.reproduction
 import numpy as np
 import pytest
 
@@ -15,29 +19,56 @@ def stream(seed: int = 0) -> PrivateStream:
 
 def draw(own: PrivateStream) -> tuple[float, float]:
     with own.swapped_in():
-        return random.random(), random.gauss(0.0, 1.0)
+        return neat.genes.random(), neat.attributes.gauss(0.0, 1.0)
 
 
-def test_the_global_stream_continues_unchanged() -> None:
-    random.seed(5)
-    expected = [random.random(), random.random()]
-    random.seed(5)
-    first = random.random()
-    draw(stream())
-    assert [first, random.random()] == expected
+def drawn_by_neat() -> list[float]:
+    return [
+        neat.attributes.choice([1.0, 2.0]),
+        neat.attributes.gauss(0.0, 1.0),
+        neat.attributes.random(),
+        neat.attributes.uniform(0.0, 1.0),
+        neat.attributes.randint(1, 9),
+        neat.genes.random(),
+        neat.genome.choice([1.0, 2.0]),
+        neat.genome.random(),
+        neat.reproduction.random.random(),
+    ]
 
 
-def test_the_global_stream_is_restored_after_an_error() -> None:
+def test_neat_draws_what_the_functions_of_python_would_draw() -> None:
+    with stream().swapped_in() as own:
+        random.setstate(own.getstate())
+        private = drawn_by_neat()
+    assert private == drawn_by_neat()
+
+
+def test_the_global_stream_does_not_change() -> None:
     before = random.getstate()
+    with stream().swapped_in():
+        drawn_by_neat()
+    assert random.getstate() == before
 
+
+def test_a_simulation_in_another_thread_can_draw_and_seed() -> None:
+    expected = draw(stream())
+    own = stream()
+    with own.swapped_in():
+        random.seed(0)
+        first = neat.genes.random()
+        random.random()
+        assert (first, neat.attributes.gauss(0.0, 1.0)) == expected
+
+
+def test_neat_draws_from_the_global_stream_again_after_an_error() -> None:
     def fail() -> None:
         with stream().swapped_in():
-            random.random()
             raise KeyError
 
     with pytest.raises(KeyError):
         fail()
-    assert random.getstate() == before
+    assert neat.reproduction.random is random
+    assert (neat.genes.random, neat.attributes.gauss) == (random.random, random.gauss)
 
 
 def test_each_stream_continues_where_it_stopped() -> None:
@@ -69,8 +100,8 @@ def test_streams_of_several_threads_do_not_mix() -> None:
 
 def test_a_restored_stream_continues_bit_for_bit() -> None:
     own, other = stream(1), stream(2)
-    with own.swapped_in():
-        random.gauss(0.0, 1.0)  # stores a second number for the next call
+    with own.swapped_in() as twister:
+        twister.gauss(0.0, 1.0)  # stores a second number for the next call
     state = own.state()
     assert json.loads(json.dumps(state)) == state
     other.restore(json.loads(json.dumps(state)))

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from bars import bar, soft, torn
+from hypothesis import given, strategies as st
+from hypothesis.extra import numpy as hnp
 
 from evoframe import ConfigurationError, Design, InputError, Record
 from evoframe.testing import SimulatorContract
@@ -139,6 +141,11 @@ class TestPaper:
         assert outcome.times[[0, 5]] == pytest.approx([0.0032029, 0.0672616], abs=5e-8)
 
 
+# Few values, so that bodies and phases are often equal; 1 + 1e-9 is 1 in single precision.
+BODIES = hnp.arrays(np.uint8, (1, 1, 2), elements=st.sampled_from([0, 1, 3]))
+PHASES = hnp.arrays(np.float64, (1, 1, 2), elements=st.sampled_from([0.0, -0.0, 1.0, 1.0 + 1e-9, 2.0]))
+
+
 class TestKey:
     def key(self, vox: Vox, body: Design, **changed: Any) -> bytes:
         return vox.key(Design({**body.roles, **changed}), PAPER)
@@ -177,6 +184,18 @@ class TestKey:
         vox = Vox(temperature_amplitude=25.0)
         turned = bar(3, 3).with_role("controller", np.ones((2, 1, 1)))
         assert vox.key(turned, Record(("tip",))) == vox.key(bar(3, 3), Record(("tip",)))
+
+    @given(BODIES, BODIES, PHASES, PHASES)
+    def test_keys_are_equal_if_and_only_if_body_and_acting_phases_are(
+        self, body: Any, other: Any, phase: Any, turned: Any
+    ) -> None:
+        designs = [Design({"morphology": body, "controller": phase})]
+        designs.append(Design({"morphology": other, "controller": turned}))
+        as_simulated = [(body, np.float32(phase[body == 3])), (other, np.float32(turned[other == 3]))]
+        same = all(np.array_equal(one, another) for one, another in zip(*as_simulated, strict=True))
+        [key, another_key] = [Vox().key(design, PAPER) for design in designs]
+        assert (key == another_key) == same
+        assert Vox().key(designs[0], Record(("tip",))) not in (key, another_key)
 
     def test_the_key_depends_on_the_shape(self) -> None:
         body = small()
