@@ -10,9 +10,9 @@ PARALLEL := --numprocesses auto --dist worksteal
 
 LOWEST := $(VENV)-lowest
 VERSIONLESS := tests/survival tests/cli/test_streams.py tests/cli/test_signals.py # depend on no version
-LONG   := interpreters kills latex
+LONG   := interpreters kills latex hunt
 
-.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters kills latex clean
+.PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters kills latex hunt clean
 
 ## run: run the published experiment (preset paper)
 run: $(VENV)/installed
@@ -68,6 +68,10 @@ interpreters: $(VENV)/developing
 kills: $(VENV)/developing
 	$(BIN)/python tests/survival/worker_kills.py --kills 400
 	$(BIN)/python tests/survival/worker_kills.py --kills 400 --seed 1000 --busy 2
+
+## hunt: look for ten minutes for bodies whose samples depend on what the solver leaves out
+hunt: $(VENV)/developing
+	$(BIN)/python tests/libvox/hunt.py 600
 
 ## latex: typeset tables of reports
 latex: $(VENV)/developing

@@ -344,6 +344,18 @@ static inline int64_t box_cell(const struct body *body, int64_t slot)
     return at[0] + body->row[1] * at[1] + body->row[2] * at[2];
 }
 
+/* Return the square of the distance of two voxels at rest, in edges. */
+static inline int64_t start_distance2(const struct body *body, struct pair pair)
+{
+    int64_t distance2 = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t by =
+            body->coordinates[pair.second][axis] - body->coordinates[pair.first][axis];
+        distance2 += by * by;
+    }
+    return distance2;
+}
+
 /* Return the neighbor of a slot along an axis, or -1 if it is outside the box. */
 static inline int64_t slot_beside(const struct body *body, int64_t slot, enum axis axis,
                                   bool upwards)

@@ -144,11 +144,20 @@ static void rest_surroundings(struct body *body, bool whole)
     if (s->self_collision && !whole) vox_watch_rest(body);
 }
 
-/* Return the number of steps to make: those up to the last sample, unless everything is wanted. */
+/* Return the points that tracks record. */
+static enum sources sources_of(const struct vox_tracks *tracks)
+{
+    if (tracks->body || tracks->voxels || tracks->energy || tracks->strain || tracks->momentum)
+        return SOURCE_ALL;
+    return (enum sources)((tracks->tip ? SOURCE_TIP : 0) | (tracks->face ? SOURCE_FACE : 0));
+}
+
+/* Return the number of steps to make: up to the last sample, unless everything is wanted. */
 static int64_t last_step(const struct body *body, const struct samples *samples)
 {
     if (body->model->settings.whole_body) return body->census.steps;
-    return samples->n > 0 ? samples->steps[samples->n - 1] : 0;
+    const bool recorded = samples->n > 0 && sources_of(samples->tracks) != 0;
+    return recorded ? samples->steps[samples->n - 1] : 0;
 }
 
 /* Simulate a body, either as a whole or what can affect the samples, and write them. */
@@ -185,14 +194,6 @@ static struct end run(struct body *body, const uint8_t *material, struct samples
         }
         if (step == 0 && shares) vox_first_keep(body, limit);
     }
-}
-
-/* Return the points that tracks record. */
-static enum sources sources_of(const struct vox_tracks *tracks)
-{
-    if (tracks->body || tracks->voxels || tracks->energy || tracks->strain || tracks->momentum)
-        return SOURCE_ALL;
-    return (enum sources)((tracks->tip ? SOURCE_TIP : 0) | (tracks->face ? SOURCE_FACE : 0));
 }
 
 /* Return whether effects spread only along bonds and across pairs of voxels. */

@@ -20,7 +20,8 @@ static const double GAIN = 1.15; /* of the largest speed in a step; in ten steps
 static const double STRONGEST = 1.25; /* bond damping times the fraction of the largest time step */
 static const double STEPS_PER_EDGE = SPACE * 1.7320508075688772; /* between cells, along any line */
 static const double DIAGONAL = 1.4142135623730951; /* edges, distance of unconnected neighbors */
-static const double ROUNDING = 1e-9;               /* relative, of distances */
+static const int64_t MOST_MEASURED = 1024; /* voxels; the pairs of more would take too long */
+static const double ROUNDING = 1e-9;       /* relative, of distances */
 
 /* Largest distance of two voxels that touch, m. */
 static double largest_touch(const vox_model *model)
@@ -115,6 +116,7 @@ enum vox_status vox_watch_shape(struct body *body)
     for (int64_t group = 0; group < groups; group++)
         watch->begin[group + 2] += watch->begin[group + 1];
     visit(body, watch->begin + 1, watch->pairs.list);
+    watch->measured = false;
     watch->deepest = 0.0;
     for (int64_t i = 0; i < body->census.n_voxels; i++)
         watch->deepest = fmax(watch->deepest, body->depth[body->slots[i]]);
@@ -166,10 +168,16 @@ static double way_in(const struct body *body, double steps)
     return steps * dt * (FASTER * body->contacts.watch.top_speed + steps * dt * gravity);
 }
 
-/* Return by how many steps the size of a voxel is older than this step. */
+/* Return the number of steps from the start. */
+static double steps_made(const struct body *body)
+{
+    return body->time / body->census.dt;
+}
+
+/* Return by how many steps the state of a voxel is older than this step. */
 static double absence(const struct body *body, int32_t slot, double limit)
 {
-    return fmax(0.0, (double)body->depth[slot] - limit - 1.0);
+    return fmax(0.0, fmin((double)body->depth[slot] - limit - 1.0, steps_made(body)));
 }
 
 /* Return the size of a voxel, or the largest one if it is too old. */
@@ -195,28 +203,65 @@ static bool may_touch(const struct body *body, struct pair pair, double limit)
     return !(vec_dot(apart, apart) > reach * reach * (1.0 + ROUNDING));
 }
 
-/* Return whether a voxel up to a depth may touch one that was not near at rest. The time since the
- * latter was computed is limited by their distance, since depths spread through space, by the
- * deepest voxel, and by the time from the start. */
-static bool far_may_touch(const struct body *body, double limit, double touching)
+/* Return whether no voxel up to a depth can touch one that was not near at rest, because of the
+ * steps since the latter was computed: they are limited by their distance, since depths spread
+ * through space, by the deepest voxel, and by the time from the start. */
+static bool far_are_apart(const struct body *body, double limit, double touching)
 {
     const double edge = body->model->settings.voxel_size, radius = near_radius(body->model);
-    const double most =
-        fmin(body->time / body->census.dt, fmax(0.0, body->contacts.watch.deepest - limit - 1.0));
-    const double closest = fmin(most, STEPS_PER_EDGE * radius / edge - 1.0);
-    const double farther = fmax(radius, (most + 1.0) / STEPS_PER_EDGE * edge);
+    const double most = fmin(body->contacts.watch.deepest - limit - 1.0, steps_made(body));
+    const double longest = fmax(0.0, most);
+    const double closest = fmin(longest, STEPS_PER_EDGE * radius / edge - 1.0);
+    const double farther = fmax(radius, (longest + 1.0) / STEPS_PER_EDGE * edge);
     /* between these distances, the way grows faster than the time */
-    return touching + way_in(body, closest) >= radius || touching + way_in(body, most) >= farther;
+    return touching + way_in(body, closest) < radius && touching + way_in(body, longest) < farther;
+}
+
+/* Find the distances for the next function. */
+static void measure(const struct body *body, struct watch *watch)
+{
+    const double edge = body->model->settings.voxel_size, radius = near_radius(body->model) / edge;
+    const int64_t near2 = (int64_t)ceil(radius * radius * (1.0 - ROUNDING));
+    const struct contacts *contacts = &body->contacts;
+    for (int k = 0; k < DEPTHS; k++) watch->apart2[k] = INT64_MAX;
+    for (int64_t i = 0; i < contacts->n_skin; i++) {
+        if (body->voxels.fixed[contacts->skin[i]] == VOX_FIX_ALL) continue;
+        for (int64_t j = i + 1; j < contacts->n_skin; j++) {
+            const struct pair pair = {contacts->skin[i], contacts->skin[j]};
+            const int64_t distance2 = start_distance2(body, pair);
+            const int64_t by = labs(body->depth[pair.first] - body->depth[pair.second]);
+            int64_t *least = &watch->apart2[by < DEPTHS ? by : DEPTHS - 1];
+            if (distance2 >= near2 && distance2 < *least &&
+                body->voxels.fixed[pair.second] != VOX_FIX_ALL)
+                *least = distance2;
+        }
+    }
+    watch->measured = true;
+}
+
+/* Return the same, because of the distances at rest of all pairs of voxels whose depths differ by
+ * the same number of steps. */
+static bool all_are_apart(const struct body *body, struct watch *watch, double touching)
+{
+    const double edge = body->model->settings.voxel_size;
+    if (touching >= near_radius(body->model) || body->contacts.n_skin > MOST_MEASURED) return false;
+    if (!watch->measured) measure(body, watch);
+    for (int k = 1; k < DEPTHS; k++) {
+        if (watch->apart2[k] == INT64_MAX) continue;
+        const double steps = fmin(k < DEPTHS - 1 ? k - 1.0 : watch->deepest, steps_made(body));
+        if (touching + way_in(body, steps) >= edge * sqrt((double)watch->apart2[k])) return false;
+    }
+    return true;
 }
 
 /* Return whether a pair of voxels up to a depth that is not listed at rest may touch. */
-static bool others_may_touch(const struct body *body, double limit)
+static bool others_may_touch(struct body *body, double limit)
 {
-    const struct watch *watch = &body->contacts.watch;
+    struct watch *watch = &body->contacts.watch;
     const vox_model *model = body->model;
     const double edge = model->settings.voxel_size;
     const double touching = largest_touch(model) + 2.0 * body->farthest;
-    if (far_may_touch(body, limit, touching)) return true;
+    if (!far_are_apart(body, limit, touching) && !all_are_apart(body, watch, touching)) return true;
     const double reach = fmin(touching + way_in(body, LONGEST_PAIR - 1), near_radius(model));
     const double reach2 = reach / edge * (reach / edge) * (1.0 + ROUNDING);
     const int64_t last = limit < DEPTHS - 1 ? (int64_t)limit : DEPTHS - 1;

@@ -88,6 +88,9 @@ struct near_by {
     struct search search;
 };
 
+/* Number of depths that are distinguished by their order; all larger ones count as the last. */
+#define DEPTHS 256
+
 /* Pairs near each other that are not listed at rest, sorted by the square of their distance at rest
  * in edges and, for each of them, by the lower depth. */
 struct watch {
@@ -95,12 +98,12 @@ struct watch {
     struct pairs pairs; /* in this order */
     uint8_t *lost;  /* [first.n] whether a pair listed at rest has been out of reach since then */
     double deepest; /* largest depth of a voxel */
-    double wave_speed; /* m/s, of the material in a wave of the largest strain */
-    double top_speed;  /* m/s, of any voxel so far, or of a wave */
+    bool measured;  /* whether the next array is known */
+    int64_t apart2[DEPTHS]; /* square of the smallest distance at rest of two voxels that are not
+                               near, edges, for each difference of their depths */
+    double wave_speed;      /* m/s, of the material in a wave of the largest strain */
+    double top_speed;       /* m/s, of any voxel so far, or of a wave */
 };
-
-/* Number of depths that are distinguished by their order; all larger ones count as the last. */
-#define DEPTHS 256
 
 /* The voxels that may touch others, and the list of candidate pairs (section 10). */
 struct contacts {

@@ -1,103 +1,34 @@
 """Agreement of all kernels: the fast ones bit for bit, the scalar reference up to rounding."""
 
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
-from hypothesis.extra import numpy as arrays
-from numpy.typing import NDArray
+from hypothesis import given
+from soft_bodies import EDGE as L, Case, assert_same, cases
 
-from evoframe_libvox import FIX_ALL, KERNELS, Material, Model, Result, Settings, Track
+from evoframe_libvox import KERNELS, Material, Model, Result
 
-Bytes = NDArray[np.uint8]
-SettingsMaker = Callable[..., Settings]
 ModelMaker = Callable[..., Model]
 FAST = KERNELS[1:]
-TRACKS: tuple[Track, ...] = get_args(Track)
-L = 0.05
-
-# Materials with equal bonds, and materials with different bonds.
-ALIKE = {1: Material(5e6, 0.35, 1e6, 0.0, 1.0, 0.5), 3: Material(5e6, 0.35, 1e6, 0.01, 1.0, 0.5)}
-DIFFERENT = ALIKE | {3: Material(1e6, 0.2, 5e5, -0.02, 0.3, 0.1), 7: Material(2e7, 0.45, 3e6, 0.03, 0.1, 0.1)}
 
 
-@st.composite
-def bodies(draw: st.DrawFn, codes: list[int]) -> tuple[Bytes, NDArray[np.float64], Bytes]:
-    """Draw materials, phases in cycles and fixed degrees of freedom as arrays over one canvas."""
-    canvas = draw(st.tuples(st.integers(1, 7), st.integers(1, 5), st.integers(1, 5)))
-    body = draw(arrays.arrays(np.uint8, canvas, elements=st.sampled_from([0, *codes, *codes])))
-    body[-1, 0, 0] = codes[0]
-    cycles = st.integers(-40, 40).map(lambda n: n / 16)
-    phase = draw(arrays.arrays(np.float64, canvas, elements=cycles))
-    held = draw(st.sampled_from(["nothing", "slab", "in part"]))
-    fixed = np.zeros(canvas, np.uint8)
-    if held == "slab":
-        fixed[0] = FIX_ALL
-    elif held == "in part":
-        fixed = draw(arrays.arrays(np.uint8, canvas, elements=st.sampled_from([0, 0, 0, 4, 7, 56, 63])))
-    return body, phase, fixed
+def simulated(case: Case, kernel: str) -> Result:
+    return case.simulate(range(case.steps()), kernel=kernel)
 
 
-surroundings = st.fixed_dictionaries(
-    {},
-    optional={
-        "gravity": st.sampled_from([-9.81, 2.0]),
-        "floor": st.booleans(),
-        "floor_slope": st.sampled_from([0.0, 5.0]),
-        "fluid_drag": st.sampled_from([0.0, 700.0]),
-        "fluid_by_size": st.booleans(),
-        "falling_code": st.sampled_from([0, 1]),
-        "smallest_size": st.sampled_from([0.1, 0.95]),
-        "largest_size": st.sampled_from([1.0, 1.05, 3.0]),
-        "size_clamp": st.booleans(),
-        "start_time": st.sampled_from([0.0, 0.01]),
-        "ramp": st.sampled_from([0.0, 0.02]),
-        "substeps": st.sampled_from([1, 2]),
-        "bond_damping": st.sampled_from([0.2, 1.0]),
-        "slow_damping": st.sampled_from([0.0, 0.05]),
-        "contact_damping": st.sampled_from([0.0, 0.5]),
-        "contact_friction": st.booleans(),
-        "complete_contacts": st.booleans(),
-        "self_collision": st.booleans(),
-        "collision_horizon": st.sampled_from([1.3, 2.0, 3.0]),
-        "temperature_amplitude": st.sampled_from([5.0, 14.4714242553]),
-    },
-)
-
-cases = st.one_of(
-    st.tuples(st.just(ALIKE), bodies([1, 3]), surroundings),
-    st.tuples(st.just(DIFFERENT), bodies([1, 3, 7]), surroundings),
-)
-Case = tuple[dict[int, Material], tuple[Bytes, NDArray[np.float64], Bytes], dict[str, Any]]
-
-
-def simulated(case: Case, settings: SettingsMaker, **how: Any) -> Result:
-    palette, (body, phase, fixed), options = case
-    x, y, z = body.shape
-    model = Model((x, y, z), palette, settings(**{"duration": 0.05} | options), fixed, **how)
-    return model.simulate(body[None], phase[None], range(int(model.time_steps(body[None])[1][0])), TRACKS)
-
-
-def assert_same(a: Result, b: Result) -> None:
-    assert np.array_equal(a.diverged_step, b.diverged_step)
-    for track in TRACKS:
-        assert np.array_equal(a.tracks[track], b.tracks[track], equal_nan=True), track
-
-
-@given(cases)
-def test_fast_kernels_return_the_same_bits(small_settings: SettingsMaker, case: Case) -> None:
-    first = simulated(case, small_settings, kernel=FAST[0])
+@given(cases())
+def test_fast_kernels_return_the_same_bits(case: Case) -> None:
+    first = simulated(case, FAST[0])
     for kernel in FAST[1:]:
-        assert_same(first, simulated(case, small_settings, kernel=kernel))
+        assert_same(first, simulated(case, kernel))
 
 
-@given(cases)
-def test_the_fast_kernel_agrees_with_the_reference(small_settings: SettingsMaker, case: Case) -> None:
+@given(cases())
+def test_the_fast_kernel_agrees_with_the_reference(case: Case) -> None:
     """Within 1e-9 edges after 15 to 30 steps, far less than the effect of any rule."""
-    reference = simulated(case, small_settings, kernel="scalar")
-    fast = simulated(case, small_settings, kernel=FAST[-1])
+    reference, fast = simulated(case, "scalar"), simulated(case, FAST[-1])
     assert np.array_equal(reference.diverged_step, fast.diverged_step)
     for track in ("tip", "face", "body", "voxels"):
         off = np.abs(fast.tracks[track] - reference.tracks[track])
@@ -169,26 +100,6 @@ def test_bonds_that_turn_by_more_than_half_a_turn(small_model: ModelMaker, seed:
         result = model.simulate(np.ones((1, *canvas), np.uint8), phase, [280], ["voxels"])
         assert result.diverged_step.tolist() == [0]
         assert np.isfinite(result.tracks["voxels"]).all()
-
-
-@given(cases)
-def test_a_body_does_not_depend_on_the_previous_one(small_settings: SettingsMaker, case: Case) -> None:
-    """Compare a batch of alternating bodies and controllers with each one alone in a new model."""
-    palette, (body, phase, fixed), options = case
-    x, y, z = body.shape
-    other = np.where(body, body[::-1], 0).astype(np.uint8)
-    other[-1, 0, 0] = body[-1, 0, 0]
-    batch, phases = np.stack([body, body, other, body]), np.stack([phase, -phase, phase, phase])
-
-    def model() -> Model:
-        return Model((x, y, z), palette, small_settings(**{"duration": 0.05} | options), fixed)
-
-    steps = model().time_steps(batch)[1].min()
-    together = model().simulate(batch, phases, [0, steps], TRACKS)
-    for i in range(4):
-        alone = model().simulate(batch[i : i + 1], phases[i : i + 1], [0, steps], TRACKS)
-        for track in TRACKS:
-            assert np.array_equal(alone.tracks[track][0], together.tracks[track][i], equal_nan=True)
 
 
 def test_a_kernel_can_be_chosen(small_model: ModelMaker, monkeypatch: pytest.MonkeyPatch) -> None:
