@@ -135,7 +135,7 @@ class TestMeanwhile:
         scorer = evaluator(Counting(), workers=2)
         scores = scorer.evaluate(designs(), 100, lambda: seen.append(len(made)))
         scorer.close()
-        assert seen == [2 * 8]  # two batches for the other worker
+        assert seen == [3 * 8]  # three batches: two for the other worker, and one more
         assert [score.value for score in scores] == list(range(100))
 
     @pytest.mark.parametrize("workers", [1, 3])
@@ -158,7 +158,7 @@ class TestMeanwhile:
         with pytest.raises(type(error)) as caught:
             scorer.evaluate((design(a, 1) for a in range(100)), 100, fail)
         assert caught.value is error
-        assert len(counting.simulated) <= 2 * 8
+        assert len(counting.simulated) <= 3 * 8
         scorer.close()
 
 

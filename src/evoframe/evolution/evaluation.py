@@ -30,7 +30,7 @@ __all__ = ["Evaluator", "score_designs"]
 T = TypeVar("T")
 
 _LARGEST_BATCH = 8  # designs; they share the overhead of a call and the preparation of a common body
-_BATCHES_PER_WORKER = 2  # batches shrink towards the end, so that all workers finish together
+_BATCHES_PER_WORKER = 2  # can be taken before the first result: the current one, and the next
 
 
 @attrs.define
@@ -104,11 +104,13 @@ class Evaluator:
 
     @property
     def _batches_ahead(self) -> int:
-        """Number of batches for the other workers; executors do not wait for results before it."""
-        return _BATCHES_PER_WORKER * (self.workers.workers - 1)
+        """Number of batches that keep the other workers busy, and for which no executor waits for results."""
+        workers = self.workers.workers
+        return _BATCHES_PER_WORKER * workers - 1 if workers > 1 else 0
 
     def _batch_size(self, left: int) -> int:
-        return min(max(1, left // (_BATCHES_PER_WORKER * self.workers.workers)), _LARGEST_BATCH)
+        """Return the size of the next batch: they shrink, so that all workers finish together."""
+        return min(max(1, left // self.workers.workers), _LARGEST_BATCH)
 
     def _key(self, design: Design, record: Record) -> bytes:
         with blaming("simulator"):
