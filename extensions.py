@@ -4,6 +4,7 @@
 """
 
 import os
+import platform
 from pathlib import Path
 
 from cffi import FFI
@@ -13,6 +14,8 @@ HERE = Path(__file__).parent  # relative to the project's root, as setuptools re
 FLAGS = (
     *("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"),
     "-fvisibility=hidden",  # an extension exports only its init function
+    # Arrange instructions as processors with wide vectors prefer; no other instructions are used.
+    *(["-mtune=skylake-avx512"] if platform.machine() in ("x86_64", "AMD64") else []),
 )
 SANITIZE_FLAGS = (
     *("-O1", "-g", "-fno-omit-frame-pointer"),

@@ -337,6 +337,19 @@ IN_LOOP struct vec loaded(struct vec force, double drag_rate, struct vec momentu
                         (force.z - drag_rate * momentum.z) + weight};
 }
 
+/* Return the depth of a voxel below the plane of the floor, m; negative above it. */
+IN_LOOP double depth_in_floor(double size, double x, double z, double rise)
+{
+    return 0.5 * size - z + rise * x;
+}
+
+static inline double floor_depth(const struct body *body, int64_t slot)
+{
+    const struct voxels *v = &body->voxels;
+    return depth_in_floor(v->size[slot], v->position.x[slot], v->position.z[slot],
+                          body->model->floor_rise);
+}
+
 /* Return the index of a slot's cell in the box. */
 static inline int64_t box_cell(const struct body *body, int64_t slot)
 {
@@ -451,9 +464,6 @@ IN_LOOP double limited(double wanted, double last, double smallest, double large
     return (shrinks | grows) ? (clamp ? limit : last) : wanted;
 }
 
-/* Add slow damping and weight to the force on a voxel. */
-void vox_voxel_load(struct body *body, int64_t slot);
-
 /* Advance a voxel by one time step under all forces, and update the body's `top_speed` and
  * `farthest`. Return false if it diverges. */
 bool vox_voxel_advance(struct body *body, int64_t slot);
@@ -508,9 +518,6 @@ void vox_fluid_rest(struct body *body);
 void vox_fluid_apply(struct body *body);
 
 /* floor.c */
-
-/* Return the depth of a voxel below the plane of the floor, m; negative above it. */
-double vox_floor_depth(const struct body *body, int64_t slot);
 
 /* Add the normal force and friction of the floor to the force on a voxel, which must include all
  * other forces; a sticking voxel loses its lateral momentum. */

@@ -107,7 +107,7 @@ static bool has_fallen(const struct body *body, const uint8_t *material)
 {
     const int64_t code = body->model->settings.falling_code;
     for (int64_t i = 0; code != 0 && i < body->census.n_voxels; i++)
-        if (material[body->cells[i]] == code && vox_floor_depth(body, body->slots[i]) > 0.0)
+        if (material[body->cells[i]] == code && floor_depth(body, body->slots[i]) > 0.0)
             return true;
     return false;
 }

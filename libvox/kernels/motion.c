@@ -72,7 +72,8 @@ static void hold(const struct voxels *v, int64_t i)
     vec_put(v->spin, i, (struct vec){0.0, 0.0, 0.0});
 }
 
-void vox_voxel_load(struct body *body, int64_t slot)
+/* Add slow damping and weight to the force on a voxel. */
+static void load(struct body *body, int64_t slot)
 {
     const struct voxels *v = &body->voxels;
     const struct vec force = vec_at(v->force, slot), momentum = vec_at(v->momentum, slot);
@@ -106,7 +107,7 @@ static bool voxel_move(struct body *body, int64_t slot)
 /* The floor is last, because friction depends on all other forces. */
 bool vox_voxel_advance(struct body *body, int64_t slot)
 {
-    vox_voxel_load(body, slot);
+    load(body, slot);
     if (body->model->settings.floor) vox_floor_apply(body, slot);
     return voxel_move(body, slot);
 }

@@ -83,10 +83,12 @@ IN_LOOP struct vec turn_back(const struct matrix *m, struct vec v)
 struct sight {
     lanes stretch[3];  /* m; before `straighten`, position of the upper end relative to the lower */
     lanes relative[4]; /* quaternion of the upper end relative to the frame */
-    lanes onto[3];     /* w, y, z of the rotation of the bond onto x; only if a bond is in the large
-                          frame */
-    lanes rest;        /* m */
-    lanes small;       /* 1 or 0, the frame of this step */
+    /* only if a bond is in the large frame */
+    lanes onto[3];           /* w, y, z of the rotation of the bond onto x */
+    lanes ratio, onto_ratio; /* lengths of both rotations' vectors and their quaternions' vectors */
+    /* always */
+    lanes rest;  /* m */
+    lanes small; /* 1 or 0, the frame of this step */
 } IN_LINES;
 
 /* Orientations of the voxels in a tile as matrices, row by row: the lower ends of its bonds along
@@ -181,6 +183,20 @@ IN_LOOP struct quat onto_x(struct vec u, double length)
     return (struct quat){choose(slight, 1.0 - 0.5 * (y * y + z * z), sum * k), 0.0, y, z};
 }
 
+/* Ratio of the lengths of a rotation vector and of its quaternion's vector part. As in bond.c, the
+ * chord replaces the arc below 5.6 degrees, and a cosine beyond 1 or -1, of a quaternion that is
+ * not exactly unit, means no rotation. */
+IN_LOOP double chord_ratio(double cosine)
+{
+    return choose(cosine >= 1.0, 0.0, 2.0 * inverse_root_of_half(1.0 - cosine));
+}
+
+IN_LOOP double arc_ratio(double cosine)
+{
+    const double sine2 = 1.0 - cosine * cosine;
+    return choose(sine2 <= 0.0, 0.0, 2.0 * arccosine(cosine) / sqrt(sine2));
+}
+
 /* Transform the bonds in the large frame; return the number of bonds that are turned too far to
  * replace the arc by the chord. */
 IN_LOOP int64_t straighten(const double *restrict depth, struct range range, double limit,
@@ -214,16 +230,31 @@ IN_LOOP int64_t straighten(const double *restrict depth, struct range range, dou
     return sum_of(far);
 }
 
-/* Ratio of the lengths of a rotation vector and of its quaternion's vector part, as in bond.c: the
- * chord replaces the arc below 5.6 degrees, and a cosine beyond 1 or -1, of a quaternion that is
- * not exactly unit, means no rotation. */
-IN_LOOP double arc_ratio(double cosine, bool far)
+/* Replace chords by arcs where the engine does; return whether a bond is turned by more than 120
+ * degrees, for which the next function is needed. */
+static bool bend(const double *restrict depth, struct range range, double limit,
+                 struct sight *restrict sight)
 {
-    const double chord = choose(cosine >= 1.0, 0.0, 2.0 * inverse_root_of_half(1.0 - cosine));
-    if (!far) return chord;
-    const double sine2 = 1.0 - cosine * cosine;
-    const double arc = choose(sine2 <= 0.0, 0.0, 2.0 * arccosine(cosine) / sqrt(sine2));
-    return choose(cosine > COSINE_OF_SMALL_ROTATION, chord, arc);
+    counts over = {0};
+    FOR_LANES(i, range)
+    {
+        const double w = sight->onto[0][i], turned = sight->relative[0][i];
+        const double arc = short_arc_ratio(turned), onto_arc = short_arc_ratio(w);
+        sight->ratio[i] = choose(turned > COSINE_OF_SMALL_ROTATION, chord_ratio(turned), arc);
+        sight->onto_ratio[i] = choose(w > COSINE_OF_SMALL_ROTATION, chord_ratio(w), onto_arc);
+        over[i - vector] += (depth[i] <= limit) & !((turned >= 0.5) & (w >= 0.5));
+    }
+    return sum_of(over) > 0;
+}
+
+static void bend_over(struct range range, struct sight *restrict sight)
+{
+    FOR_LANES(i, range)
+    {
+        const double w = sight->onto[0][i], turned = sight->relative[0][i];
+        sight->ratio[i] = choose(turned >= 0.5, sight->ratio[i], arc_ratio(turned));
+        sight->onto_ratio[i] = choose(w >= 0.5, sight->onto_ratio[i], arc_ratio(w));
+    }
 }
 
 /* ---- forces of bonds ------------------------------------------------------------------------- */
@@ -314,8 +345,8 @@ IN_LOOP struct quat turned_back(struct quat lower, enum axis axis, double w, dou
 }
 
 /* Compute the forces and moments of a tile's bonds, and store the deformations; return the number
- * of overstrained bonds. `coupling` is NULL if bonds differ; the constants `large` and `far` mean
- * that some bonds are in the large frame, or are turned far. */
+ * of overstrained bonds. `coupling` is NULL if bonds differ; the constant `large` means that some
+ * bonds are in the large frame. */
 IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
                      const struct coupling *coupling, enum axis axis, int64_t base,
                      struct range range, const struct span *span, bool large, bool far,
@@ -349,11 +380,11 @@ IN_LOOP int64_t pull(const struct voxels *v, const struct bonds *bonds,
         struct quat frame = lower;
         if (large) {
             const double w = sight->onto[0][i], y = sight->onto[1][i], z = sight->onto[2][i];
-            const double k = arc_ratio(w, far);
+            const double k = far ? sight->onto_ratio[i] : chord_ratio(w);
             a = (struct vec){0.0, k * y, k * z};
             frame = turned_back(lower, axis, w, y, z);
         }
-        const double k = arc_ratio(r.w, far);
+        const double k = far ? sight->ratio[i] : chord_ratio(r.w);
         const struct vec b = {k * r.x, k * r.y, k * r.z};
         const struct deformation now = {p, a, b, large ? a.y + b.y : b.y, large ? a.z + b.z : b.z};
 
@@ -413,12 +444,14 @@ IN_LOOP bool bonds_of_tile(const struct body *body, const struct coupling *coupl
     const struct voxels *v = &body->voxels;
     const struct bonds *b = &body->bonds[axis];
     struct sight sight;
+    const double *depth = b->depth + base;
     if (look(v, b, axis, base, range, span->limit, frames, &sight) == 0)
         return pull(v, b, coupling, axis, base, range, span, false, false, frames, &sight, loads) ==
                0;
-    if (straighten(b->depth + base, range, span->limit, &sight) == 0)
+    if (straighten(depth, range, span->limit, &sight) == 0)
         return pull(v, b, coupling, axis, base, range, span, true, false, frames, &sight, loads) ==
                0;
+    if (bend(depth, range, span->limit, &sight)) bend_over(range, &sight);
     return pull(v, b, coupling, axis, base, range, span, true, true, frames, &sight, loads) == 0;
 }
 

@@ -50,13 +50,29 @@ IN_LOOP int64_t move_tile(const struct voxels *v, int64_t base, struct range ran
 }
 
 /* Add slow damping, weight and the floor to the forces on the free voxels of a tile. */
-static void stand_tile(struct body *body, int64_t base, double limit)
+static void stand_tile(struct body *body, int64_t base, struct range range, double limit)
 {
-    for (int64_t slot = base; slot < base + TILE; slot++) {
-        if (body->voxels.depth[slot] > limit) continue;
-        vox_voxel_load(body, slot);
-        vox_floor_apply(body, slot);
+    const struct voxels *v = &body->voxels;
+    const double rise = body->model->floor_rise;
+    const double *restrict px = v->position.x + base, *restrict pz = v->position.z + base;
+    const double *restrict mx = v->momentum.x + base, *restrict my = v->momentum.y + base,
+                           *restrict mz = v->momentum.z + base;
+    double *restrict fx = v->force.x + base, *restrict fy = v->force.y + base,
+                     *restrict fz = v->force.z + base;
+    const double *restrict size = v->size + base, *restrict depth = v->depth + base;
+    const double *restrict drag_rate = v->drag_rate + base, *restrict weight = v->weight + base;
+    lanes below = {0.0};
+    FOR_LANES(i, range)
+    {
+        const struct vec bare = {fx[i], fy[i], fz[i]}, momentum = {mx[i], my[i], mz[i]};
+        const struct vec force = loaded(bare, drag_rate[i], momentum, weight[i]);
+        fx[i] = force.x;
+        fy[i] = force.y;
+        fz[i] = force.z;
+        below[i] = choose(depth[i] <= limit, depth_in_floor(size[i], px[i], pz[i], rise), 0.0);
     }
+    for (int64_t i = range.first; i < range.last; i++)
+        if (below[i] > 0.0) vox_floor_apply(body, base + i);
 }
 
 /* Turn the free voxels of a tile up to a depth; return the number of diverged ones. */
@@ -137,7 +153,7 @@ IN_LOOP int64_t advance_tile(struct body *body, int64_t base, struct range range
     const struct voxels *v = &body->voxels;
     const double dt = body->census.dt, too_far = body->model->too_far;
     const bool stands = body->model->settings.floor;
-    if (stands) stand_tile(body, base, limit);
+    if (stands) stand_tile(body, base, range, limit);
     return (stands ? move_tile(v, base, range, dt, too_far, limit, true, extremes)
                    : move_tile(v, base, range, dt, too_far, limit, false, extremes)) +
            turn_tile(v, base, range, dt, limit);

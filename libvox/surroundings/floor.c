@@ -21,18 +21,11 @@ static struct vec rub(struct body *body, int64_t slot, struct vec force, double 
     return (struct vec){0.0, 0.0, force.z};
 }
 
-double vox_floor_depth(const struct body *body, int64_t slot)
-{
-    const struct voxels *v = &body->voxels;
-    const struct vec position = vec_at(v->position, slot);
-    return 0.5 * v->size[slot] - position.z + body->model->floor_rise * position.x;
-}
-
 void vox_floor_apply(struct body *body, int64_t slot)
 {
     const struct substance *s = substance_of_voxel(body, slot);
     const struct voxels *v = &body->voxels;
-    const double depth = vox_floor_depth(body, slot);
+    const double depth = floor_depth(body, slot);
     if (!(depth > 0.0)) return;
     const double push = s->floor_stiffness * depth;
     struct vec force = vec_at(v->force, slot);
