@@ -39,8 +39,8 @@ class Work:
 # Counted in libvox/kernels/vector_bonds.h and vector_motion.h, function by function; there is one coupling.
 _MATRIX = Work(29)  # matrix_of: 10 products, 7 sums for the diagonal, 6 sums and 6 doublings off it
 _TURN = Work(15)  # turn, turn_back
-_CHORD = Work(10)  # arc_ratio: 8 of the power series, with a difference before and a doubling after
-_ARC = Work(34, divisions=1, roots=2)  # arc_ratio of a bond that is turned far, in addition to the chord
+_CHORD = Work(10)  # chord_ratio: 8 of the power series, with a difference before and a doubling after
+_ARC = Work(28)  # short_arc_ratio: the polynomial; its difference is that of the chord
 
 _LOOK = Work(3 + 28 + 2 + 1 + 8) + _TURN  # apart, quaternion product, rest, aside, limits; to the frame
 _STRAIGHTEN = Work(5 + 12 + 20, divisions=1, roots=2)  # length, onto_x, quaternion product
@@ -57,7 +57,7 @@ LARGE_FRAME = SMALL_FRAME + _STRAIGHTEN + _PULL_LARGE
 """Work of a bond's step in a tile where some bond is in the large frame."""
 
 TURNED_FAR = LARGE_FRAME + _ARC + _ARC
-"""Work of a bond's step in a tile where some bond is turned far."""
+"""Work of a bond's step in a tile where some bond is turned far, but none by more than 120 degrees."""
 
 _MOVE = Work(7 + 6 + 3 + 6 + 3 + 5 + 5)  # load, momentum, velocity, position, way, two squares
 _ROTATE = Work(9 + 3 + 28 + 8 + 7 + 4 + 6, divisions=1, roots=1)  # turn_tile, in the order of its lines
