@@ -47,6 +47,18 @@ def test_config_new_sets_every_option_if_its_preset_is_a_pipe(evoframe: Evoframe
     assert evoframe("config", "show", "my.toml").stdout == shown
 
 
+@pytest.mark.parametrize("base", ["base.toml", "presets/base.toml", 'a "quoted" name.toml'])
+def test_config_new_extends_a_file_in_another_directory(
+    evoframe: Evoframe, tmp_path: Path, base: str
+) -> None:
+    (tmp_path / "presets").mkdir()
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    (tmp_path / "mine").symlink_to("far/away")
+    (tmp_path / base).write_text("[run]\nseed = 2\n")
+    assert evoframe("config", "new", "mine/my.toml", "--preset", base).returncode == 0
+    assert evoframe("config", "show", "mine/my.toml").stdout == evoframe("config", "show", base).stdout
+
+
 def test_config_new_overwrites_nothing_unasked(evoframe: Evoframe, tmp_path: Path) -> None:
     (tmp_path / "my.toml").write_text("[run]\nseed = 2\n")
     refused = evoframe("config", "new", "my.toml")

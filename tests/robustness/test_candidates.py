@@ -109,6 +109,13 @@ class TestFiles:
         assert labels(found) == ["two.toy[0]", "two.toy[1]"]
         assert [body.source for body in found.bodies] == ["two.toy", "two.toy"]
 
+    def test_without_a_role_are_refused(self, read: Read) -> None:
+        Path("two.toy").write_text("designs = [{ a = 2.0, b = 3.0 }, { a = -1.0 }]\n")
+        with pytest.raises(InputError) as caught:
+            read("two.toy", preset="toy.toml", overrides=[STEERED])
+        assert (caught.value.source, caught.value.key) == ("two.toy", "two.toy[1]")
+        assert caught.value.problem == "missing b"
+
     def test_with_another_canvas_are_refused(self, read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
         def longer(simulator: toys.Varied, path: Path) -> list[tuple[str, Design]]:
             length = 2 if path.name == "other.toy" else 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -74,7 +75,7 @@ def new(ctx: click.Context, path: Path, preset: Layers, force: bool) -> None:
     its value in the preset. If the preset is a pipe, which no file can extend, all options are set.
     """
     resolved = complete_config(preset, (), plugins_of(ctx))
-    text = starter(resolved, preset.source) if _can_be_extended(preset) else commented(resolved)
+    text = starter(resolved, _base(preset, path)) if _can_be_extended(preset) else commented(resolved)
     try:
         data = text.encode()
     except UnicodeEncodeError as error:
@@ -88,3 +89,11 @@ def new(ctx: click.Context, path: Path, preset: Layers, force: bool) -> None:
 
 def _can_be_extended(preset: Layers) -> bool:
     return preset.source in preset_names() or is_file(Path(preset.source))
+
+
+def _base(preset: Layers, path: Path) -> str:
+    """Return how a file with this *path* names the preset."""
+    base = Path(preset.source)
+    if preset.source in preset_names() or path == STDOUT or base.is_absolute():
+        return preset.source
+    return os.path.relpath(base.parent.resolve() / base.name, path.parent.resolve())

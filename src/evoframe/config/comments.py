@@ -35,11 +35,11 @@ def starter(config: RunConfig, base: str) -> str:
 
     Args:
         config: The resolved configuration of *base*.
-        base: The preset that the file extends.
+        base: The preset that the file extends, or the path of another file from its directory.
     """
     head = [
         *_comment(f"Settings that are not set here are those of the preset {base}."),
-        f'extends = "{base}"',
+        f"extends = {_inline(base)}",
         "",
         *_comment("To change an option, remove the # in front of it. Components are chosen by name."),
     ]

@@ -100,6 +100,7 @@ def read_candidates(  # noqa: PLR0913 - the choices of a user
             f"the simulator '{config.simulator.name}' does not draw random controllers, which robustness "
             "requires; choose another, as in --set simulator=vox"
         )
+    _refuse_missing_roles(bodies, config.simulator.component.requires)
     _refuse_other_canvases(bodies, config.simulator.component.requires)
     return Candidates(config, bodies, notes)
 
@@ -224,6 +225,13 @@ def _refuse_same_names(parts: Sequence[Part]) -> None:
                     source=part.named,
                 )
             labels.add(body.label)
+
+
+def _refuse_missing_roles(bodies: Sequence[Candidate], roles: Sequence[str]) -> None:
+    for body in bodies:
+        missing = [role for role in roles if role not in body.design.roles]
+        if missing:
+            raise InputError(f"missing {' and '.join(missing)}", source=body.source, key=body.label)
 
 
 def _refuse_other_canvases(bodies: Sequence[Candidate], roles: Sequence[str]) -> None:
