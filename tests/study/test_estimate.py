@@ -47,7 +47,7 @@ def test_a_trial_writes_nothing_and_counts_all_workers(toy_study: Read, tmp_path
     missing = list(study.planned(tmp_path / "there"))
     one, all_of_them = estimate_cost(missing[:1], {}), estimate_cost(missing, {})
     assert one.bound == all_of_them.bound == "at most"
-    assert one.seconds > 0.01 * missing[0].cell.pairs / 8  # one delay for each batch of at most 8
+    assert one.seconds > 0.01 * missing[0].cell.pairs / 12  # one delay for each batch of at most 12
     assert all_of_them.megabytes == pytest.approx(3 * one.megabytes)
     assert set(tmp_path.rglob("*")) == before
 

@@ -7,6 +7,7 @@ import math
 import numbers
 import statistics
 import time
+from collections import ChainMap, deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Self, TypeAlias
 
@@ -70,7 +71,12 @@ class Coevolution:
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
     _fittest_have_met: bool = attrs.field(default=False, init=False)
-    _latest: dict[tuple[int, ...], Score] = attrs.field(factory=dict, init=False)
+    _recent: deque[dict[tuple[int, ...], Score]] = attrs.field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        # Survivors of a population meet the same collaborators again if these are still the chosen ones, so
+        # that the turn in which the population was last evaluated is the oldest one worth keeping.
+        self._recent = deque(maxlen=len(self.populations))
 
     @property
     def length(self) -> int:
@@ -123,7 +129,7 @@ class Coevolution:
         loop = structure(state["loop"], _Loop, ("loop",))
         self.turn, self.best_score = loop.turn, loop.best_score
         self._fittest_have_met = loop.fittest_have_met
-        self._latest = {}
+        self._recent.clear()
         for population in self.populations:
             population.restore(state[f"population/{population.name}"])
 
@@ -178,7 +184,7 @@ class Coevolution:
         for index in judged:
             self._judge(index, scores, fold)
         pairs = self._pairs(scores)
-        self._latest = {pair.genomes: score for pair, score in zip(pairs, scores.values(), strict=True)}
+        self._recent.append({p.genomes: score for p, score in zip(pairs, scores.values(), strict=True)})
         self.turn += 1
         self._fittest_have_met = self._fittest() in scores
         return Turn(
@@ -212,10 +218,10 @@ class Coevolution:
     def _scores(
         self, meetings: Collection[Meeting], meanwhile: Callable[[], None] = lambda: None
     ) -> dict[Meeting, Score]:
-        """Return the scores of unique meetings; pairs of the latest turn are not evaluated again."""
-        latest = self._latest  # an id stands for one genome
+        """Return the scores of unique meetings; pairs of recent turns are not evaluated again."""
+        recent = dict(ChainMap(*self._recent))  # an id stands for one genome
         pairs = zip(meetings, self._ids(meetings), strict=True)
-        known = {meeting: latest[ids] for meeting, ids in pairs if ids in latest}
+        known = {meeting: recent[ids] for meeting, ids in pairs if ids in recent}
         # Sorted, so that designs with the same first members share a batch.
         unknown = sorted(set(meetings) - known.keys())
         with self._naming_individuals(unknown):

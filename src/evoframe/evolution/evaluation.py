@@ -29,7 +29,7 @@ __all__ = ["Evaluator", "score_designs"]
 
 T = TypeVar("T")
 
-_LARGEST_BATCH = 8  # designs; they share the overhead of a call and the preparation of a common body
+_LARGEST_BATCH = 12  # designs; they share the overhead of a call and the preparation of a common body
 _BATCHES_PER_WORKER = 2  # can be taken before the first result: the current one, and the next
 
 

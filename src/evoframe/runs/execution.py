@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -76,12 +76,12 @@ class Execution:
         return verify_champion(self.config, run)
 
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
-        saving = _Saving(self._store, observers, unit_of(self.config.objective.component))
+        unit = unit_of(self.config.objective.component)
+        saving = _Saving(self._store, self._coevolution.state, observers, unit)
         self._coevolution.meanwhile = saving.complete
         try:
             for turn in self._coevolution:
-                changed = [report.population for report in turn.reports]
-                saving.begin(turn, self._coevolution.state(changed))
+                saving.begin(turn)
                 if stop():
                     break
         finally:
@@ -124,23 +124,24 @@ class _Saving:
     """
 
     _store: Store
+    _state: Callable[[Collection[str]], Mapping[str, Any]]
     _observers: Observers
     _unit: str
-    _unsaved: tuple[Turn, Mapping[str, Any]] | None = None
+    _unsaved: Turn | None = None
 
-    def begin(self, turn: Turn, state: Mapping[str, Any]) -> None:
-        """Take over a turn and the *state* after it."""
-        self._unsaved = turn, state
-        if len(turn.reports) > 1:  # the next population to reproduce could change its part of the state
+    def begin(self, turn: Turn) -> None:
+        """Take over a turn."""
+        self._unsaved = turn
+        if len(turn.reports) > 1:  # the next population to reproduce will change its part of the state
             self.complete()
 
     def complete(self) -> None:
         """Save the turn unless it is saved, and report it to the observers."""
         if self._unsaved is None:
             return
-        turn, state = self._unsaved
+        turn = self._unsaved
         self._unsaved = None  # even if it cannot be saved
-        self._store.save(turn, state)
+        self._store.save(turn, self._state([report.population for report in turn.reports]))
         _log_turn(turn, self._unit)
         self._observers.tell("evoframe_turn_finished", turn=turn)
 
