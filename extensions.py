@@ -14,6 +14,7 @@ HERE = Path(__file__).parent  # relative to the project's root, as setuptools re
 FLAGS = (
     *("-std=c11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"),
     "-fvisibility=hidden",  # an extension exports only its init function
+    "-fno-wrapv",  # Python's own flag -fwrapv hides from the compiler that indices do not overflow
     # Arrange instructions as processors with wide vectors prefer; no other instructions are used.
     *(["-mtune=skylake-avx512"] if platform.machine() in ("x86_64", "AMD64") else []),
 )
