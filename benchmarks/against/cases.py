@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 import evoframe
-from benchmarks.against.comparison import SIDES, Comparison, Measured
+from benchmarks.against.comparison import SIDES, Command, Comparison, Measured
 from benchmarks.against.results import difference
 from benchmarks.bending import bimorph
 from benchmarks.pairs import ratio
@@ -23,6 +23,7 @@ from evoframe import CONTROLLER, MORPHOLOGY, Design
 __all__ = ["CASES"]
 
 _SEEDS = (1, 2)
+_RUN_SEEDS = (1, 2, 3)  # several, since runs differ in their simulations after a change of bits
 _BATCHES = 2  # recorded batches of each seed, per unit of effort.designs
 _WORKERS = 2
 _RATIO = ("times as fast", "lower quartile", "upper quartile")
@@ -117,27 +118,34 @@ def _run(comparison: Comparison, effort: Effort) -> Section:
     rows = [
         row
         for n in (2, 10)
-        for row in _command(comparison, effort, "paper", f"n = {n}", [*effort.run, f"collaboration.n={n}"])
+        for row in _command(
+            comparison, effort, f"n = {n}", _with_workers("paper", *effort.run, f"collaboration.n={n}")
+        )
     ]
-    return Section("the command evoframe run paper", (_commands(rows),))
+    note = f"Sums of runs with the seeds {_RUN_SEEDS}."
+    return Section("the command evoframe run paper", (_commands(rows, note),))
 
 
-def _command(
-    comparison: Comparison, effort: Effort, preset: str, name: str, settings: Sequence[str]
-) -> list[Row]:
-    settings = [*settings, f"executor.workers={_WORKERS}"]
-    measured = comparison.run(preset, settings, effort)
+def _with_workers(preset: str, *settings: str, seeds: Sequence[int] = _RUN_SEEDS) -> Command:
+    return Command(preset, [*settings, f"executor.workers={_WORKERS}"], seeds)
+
+
+def _command(comparison: Comparison, effort: Effort, name: str, command: Command) -> list[Row]:
+    measured = comparison.run(command, effort)
     rows: list[Row] = []
     for clock, words in (("wall", "wall clock"), ("cpu", "CPU time")):
         seconds = (statistics.median(measured.times[side][clock]) for side in SIDES)
-        rows.append((f"{name}, {words}", *seconds, *_ratios(measured, clock), _difference(measured)))
+        simulations = (measured.simulations[side] for side in SIDES)
+        rows.append(
+            (f"{name}, {words}", *seconds, *_ratios(measured, clock), *simulations, _difference(measured))
+        )
     return rows
 
 
 def _commands(rows: Sequence[Row], note: str = "") -> Table:
     return Table(
         f"The command with {_WORKERS} workers, with the start of Python, verification and files",
-        ("case", "this, s", "other, s", *_RATIO, "results"),
+        ("case", "this, s", "other, s", *_RATIO, "this, simulations", "other, simulations", "results"),
         rows,
         f"{note} {_NEIGHBORS} Results are the scores of all pairs.".strip(),
     )
@@ -169,7 +177,7 @@ class _LongPreset:
         size = min(self.size, effort.designs)
         sizes = [f"populations.{role}.size={size}" for role in (MORPHOLOGY, CONTROLLER)]
         settings = [f"run.generations={self.generations}", *sizes]
-        rows = _command(comparison, effort, self.preset, "short run", settings)
+        rows = _command(comparison, effort, "short run", _with_workers(self.preset, *settings, seeds=[1]))
         return Section(
             f"the preset {self.preset}",
             (_per_bond_step(design, measured), _commands(rows, f"Settings: {', '.join(settings)}.")),

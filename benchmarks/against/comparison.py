@@ -23,7 +23,7 @@ from benchmarks.report import SectionError
 from benchmarks.timing import Effort
 from evoframe import CONTROLLER, MORPHOLOGY
 
-__all__ = ["ROOT", "SIDES", "Comparison", "Measured", "comparing"]
+__all__ = ["ROOT", "SIDES", "Command", "Comparison", "Measured", "comparing"]
 
 ROOT = Path(__file__).parents[2]
 """The checkout of this version of evoframe."""
@@ -33,16 +33,33 @@ SIDES = ("this", "other")
 
 
 @attrs.frozen
+class Command:
+    """The command ``evoframe run``.
+
+    Attributes:
+        preset: The preset to run.
+        settings: Overrides as ``key=value``.
+        seeds: One for each run.
+    """
+
+    preset: str
+    settings: Sequence[str]
+    seeds: Sequence[int] = (1,)
+
+
+@attrs.frozen
 class Measured:
     """Measurements of both commits, in turns, and their results.
 
     Attributes:
         times: Side -> clock -> times, s; the clocks are ``cpu``, and ``wall`` for commands.
         results: Side -> results.
+        simulations: Side -> number of simulations, for commands.
     """
 
     times: Mapping[str, Mapping[str, Sequence[float]]]
     results: Mapping[str, Sequence[Result]]
+    simulations: Mapping[str, int] = {}
 
 
 @attrs.frozen
@@ -73,15 +90,16 @@ class Comparison:
             {side: [Result(*result) for result in results[side]] for side in SIDES},
         )
 
-    def run(self, preset: str, settings: Sequence[str], effort: Effort) -> Measured:
-        """Execute the command ``evoframe run``."""
-        taken = self._alternated("run", effort.command_rounds, preset=preset, settings=list(settings))
+    def run(self, command: Command, effort: Effort) -> Measured:
+        """Execute a command with each of its seeds; the times are sums."""
+        taken = self._alternated("run", effort.command_rounds, **attrs.asdict(command))
         return Measured(
             {
                 side: {clock: [run[clock] for run in taken[side]] for clock in ("wall", "cpu")}
                 for side in SIDES
             },
             {side: [Result(*result) for result in taken[side][-1]["results"]] for side in SIDES},
+            {side: taken[side][-1]["simulations"] for side in SIDES},
         )
 
     def _ask(self, do: str, **arguments: Any) -> dict[str, Any]:

@@ -79,8 +79,14 @@ def _digest(tracks: Any) -> str:
     return digest.hexdigest()
 
 
-def run(preset: str, settings: list[str]) -> dict[str, Any]:
-    """Execute ``evoframe run``; return its times, s, and the score of each of its pairs."""
+def run(preset: str, settings: list[str], seeds: list[int]) -> dict[str, Any]:
+    """Execute ``evoframe run`` with each seed; return times, s, simulations, and the score of each pair."""
+    runs = [_run(preset, [*settings, f"run.seed={seed}"]) for seed in seeds]
+    total: dict[str, Any] = {key: sum(run[key] for run in runs) for key in ("wall", "cpu", "simulations")}
+    return {**total, "results": [result for run in runs for result in run["results"]]}
+
+
+def _run(preset: str, settings: list[str]) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as parent:
         directory = str(Path(parent) / "run")
         options = [option for setting in settings for option in ("--set", setting)]
@@ -90,8 +96,10 @@ def run(preset: str, settings: list[str]) -> dict[str, Any]:
         wall, cpu = time.perf_counter() - began, _cpu_of_children() - cpu_began
         if ended.returncode:
             raise RuntimeError(ended.stderr.strip())
-        pairs = evoframe.load_run(directory).table("pairs")
-    return {"wall": wall, "cpu": cpu, "results": [[row["score"], "", 0] for row in pairs]}
+        record = evoframe.load_run(directory)
+        simulations = sum(row["simulations"] for row in record.workload())
+        results = [[row["score"], "", 0] for row in record.table("pairs")]
+    return {"wall": wall, "cpu": cpu, "simulations": simulations, "results": results}
 
 
 def _cpu_of_children() -> float:

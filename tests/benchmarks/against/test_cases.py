@@ -10,7 +10,7 @@ import attrs
 import pytest
 
 from benchmarks.against.cases import CASES
-from benchmarks.against.comparison import SIDES, Comparison
+from benchmarks.against.comparison import SIDES, Command, Comparison
 from benchmarks.child import CHILDREN, Child, started
 from benchmarks.report import SectionError
 from benchmarks.timing import QUICK
@@ -46,4 +46,4 @@ def test_a_case_has_ratios_and_equal_results(comparison: Comparison, name: str) 
 
 def test_an_error_of_one_commit_has_its_name(comparison: Comparison) -> None:
     with pytest.raises(SectionError, match=r"(?s)this cannot run: RuntimeError: .*no-such-preset"):
-        comparison.run("no-such-preset", [], TINY)
+        comparison.run(Command("no-such-preset", []), TINY)
