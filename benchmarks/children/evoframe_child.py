@@ -97,7 +97,7 @@ def _run(preset: str, settings: list[str]) -> dict[str, Any]:
         if ended.returncode:
             raise RuntimeError(ended.stderr.strip())
         record = evoframe.load_run(directory)
-        simulations = sum(row["simulations"] for row in record.workload())
+        simulations = sum(row["simulations"] for row in record.table("workload"))
         results = [[row["score"], "", 0] for row in record.table("pairs")]
     return {"wall": wall, "cpu": cpu, "simulations": simulations, "results": results}
 

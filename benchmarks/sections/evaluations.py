@@ -62,9 +62,9 @@ def _published(effort: Effort) -> Table:
         "Published bodies, with self collision",
         ("body", "voxels", "bonds", "alone, us", f"in a batch of {_BATCH}, us", "scalar, us", "times scalar"),
         rows,
-        f"Simulated with the simulator vox (kernel {fast.kernel}) and scored. A batch is the unit of work of "
-        f"a run: {_BATCH} controllers that share the set-up of their body. The last two columns are the time "
-        "of the solver with the scalar kernel, and its ratio to that with the fastest kernel.",
+        f"Simulated with the simulator vox (kernel {fast.kernel}) and scored. The {_BATCH} controllers of a "
+        "batch share the set-up of their body. The last two columns are the time of the solver with the "
+        "scalar kernel, and its ratio to that with the fastest kernel.",
     )
 
 

@@ -267,7 +267,7 @@ def _saving(played: Mapping[int, Sequence[_Played]]) -> Table:
         "Saving, wall clock",
         ("run", "saving, s", "of the wall clock", "directory, MB"),
         rows,
-        "The state after each turn, its rows, and the champion's files; the loop waits meanwhile. Goals: "
+        "The state after each turn, its rows, and the champion's files, while the workers simulate. Goals: "
         "below 0.08 and 5 MB.",
     )
 

@@ -172,8 +172,8 @@ def _values(nesting: Any) -> Iterable[Any]:
 def _nested(values: Iterable[Any]) -> list[Any]:
     """Return the lists and tables among *values*; one that is shared counts once."""
     # Most values are scalars, whose exact types are the fastest to recognize.
-    nestings = (value for value in values if type(value) not in _SCALARS and isinstance(value, _NESTINGS))
-    return list({id(nesting): nesting for nesting in nestings}.values())
+    nested = {id(v): v for v in values if type(v) not in _SCALARS and isinstance(v, _NESTINGS)}
+    return list(nested.values())
 
 
 def is_directory(path: Path) -> bool:
