@@ -130,6 +130,19 @@ class TestBreeding:
             each.judge([1.0, 2.0, 3.0, 4.0], None)
         assert population.state() == alone.state()
 
+    def test_reports_an_error_of_the_evolver_when_it_is_needed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        def failing(_: toys.DriftRun) -> Any:
+            raise ValueError("no offspring")
+
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        monkeypatch.setattr(toys.DriftRun, "ask", failing)
+        population.breed()
+        assert population.generation == 0
+        with pytest.raises(ComponentError, match="no offspring") as caught:
+            population.reproduce()
+        assert caught.value.component == "populations.a.evolver"
+
     def test_is_discarded_when_a_state_is_restored(self) -> None:
         population = new_population()
         population.judge([1.0, 2.0, 3.0, 4.0], None)

@@ -214,6 +214,24 @@ def test_a_turn_is_saved_if_the_next_one_fails_at_once(
     assert max(row["turn"] for row in saved.turns()) == max(row["turn"] for row in saved.table("state")) == 3
 
 
+def test_every_turn_before_a_failed_reproduction_is_saved(
+    toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ask = toys.DriftRun.ask
+    calls: list[None] = []
+
+    def failing(self: toys.DriftRun) -> Any:
+        calls.append(None)
+        if len(calls) == 5:  # two initial populations, then one in each turn
+            raise ValueError("no offspring")
+        return ask(self)
+
+    monkeypatch.setattr(toys.DriftRun, "ask", failing)
+    with pytest.raises(ComponentError, match=r"'toy-drift' .*no offspring.*turn 3"):
+        run(toy_config(), out=tmp_path / "run")
+    assert max(row["turn"] for row in load_run(tmp_path / "run").pairs()) == 2
+
+
 def test_a_turn_and_its_state_are_saved_together_or_not_at_all(
     toy_config: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

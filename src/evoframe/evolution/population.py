@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import attrs
 import numpy as np
@@ -18,6 +18,9 @@ from evoframe.errors import ComponentError, RunError
 from evoframe.files import json_text
 
 __all__ = ["Population"]
+
+_Generation: TypeAlias = tuple[Sequence[Any], tuple[Member, ...]]
+"""Genomes, and the individuals that have them."""
 
 _PLAIN = {(int, int, int, int), (int, int, int, type(None))}
 """Types of the id, the size, the age and the species of a member that need no conversion."""
@@ -45,7 +48,7 @@ class Population:
     genomes: Sequence[Any] = ()
     members: tuple[Member, ...] = ()
     _networks: dict[int, Network] = attrs.field(factory=dict, init=False)
-    _offspring: tuple[Sequence[Any], tuple[Member, ...]] | None = attrs.field(default=None, init=False)
+    _offspring: _Generation | ComponentError | None = attrs.field(default=None, init=False)
     _state: dict[str, Any] | None = attrs.field(default=None, init=False)
     _best_so_far: float | None = attrs.field(default=None, init=False)
     _lowest: float | None = attrs.field(default=None, init=False)
@@ -53,7 +56,10 @@ class Population:
 
     def reproduce(self) -> None:
         """Replace the genomes with the next generation; first, with the initial one."""
-        self.genomes, self.members = self._offspring or self._next_generation()
+        offspring = self._offspring or self._next_generation()
+        if isinstance(offspring, ComponentError):
+            raise offspring
+        self.genomes, self.members = offspring
         self.generation += 1
         self._offspring = self._state = None
         self._networks.clear()
@@ -61,12 +67,16 @@ class Population:
     def breed(self) -> None:
         """Have the evolver create the next generation before :meth:`reproduce` is called.
 
-        Until then, the genomes, the members and :meth:`state` are those of the current generation.
+        Until then, the genomes, the members and :meth:`state` are those of the current generation. An error
+        of the evolver is raised by :meth:`reproduce`, since the turn in progress does not depend on it.
         """
         self.state()  # which the evolver cannot return later
-        self._offspring = self._next_generation()
+        try:
+            self._offspring = self._next_generation()
+        except ComponentError as error:
+            self._offspring = error
 
-    def _next_generation(self) -> tuple[Sequence[Any], tuple[Member, ...]]:
+    def _next_generation(self) -> _Generation:
         with blaming(self._evolver):
             genomes = list(self.evolver.ask())
             members = tuple(self._plain(member) for member in self.evolver.members())

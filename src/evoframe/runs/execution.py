@@ -131,6 +131,7 @@ class _Saving:
 
     def begin(self, turn: Turn) -> None:
         """Take over a turn."""
+        self.complete()  # the turn before, if no worker has simulated anything since
         self._unsaved = turn
         if len(turn.reports) > 1:  # the next population to reproduce will change its part of the state
             self.complete()
