@@ -308,13 +308,13 @@ struct body {
     struct contacts contacts;
     struct surface surface;
     struct first first;
-    void *memory; /* of all arrays except those of contacts and surface */
-    size_t memory_size;
-    uint8_t *material; /* [cells of the canvas] from which the body was built */
-    bool complete;     /* whether it was */
-    double time;       /* s */
-    double top_speed;  /* m/s, after the previous step */
-    double farthest;   /* m, largest distance of a voxel from its start so far */
+    void *memory;       /* of all arrays except those of contacts and surface */
+    size_t memory_size; /* bytes */
+    uint8_t *material;  /* [cells of the canvas] from which the body was built */
+    bool complete;      /* whether it was */
+    double time;        /* s */
+    double top_speed;   /* m/s, after the previous step */
+    double farthest;    /* m, largest distance of a voxel from its start so far */
 };
 
 static inline const struct substance *substance_of_voxel(const struct body *body, int64_t slot)
@@ -507,6 +507,9 @@ const struct kernel *vox_kernel_of(int32_t number);
 /* surface.c */
 
 enum vox_status vox_surface_shape(struct body *body);
+
+/* Return the size of the arrays of a surface, bytes. */
+size_t vox_surface_memory(const struct body *body);
 void vox_surface_destroy(struct surface *surface);
 
 /* fluid.c */

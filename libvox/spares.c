@@ -4,8 +4,8 @@
 
 #include "internal.h"
 
-/* bytes, of all spares together; for larger bodies the time of an allocation is negligible */
-static const size_t MOST_SPARE_MEMORY = (size_t)1 << 26;
+/* bytes, of all spares of a model together */
+static const size_t MOST_SPARE_MEMORY = (size_t)1 << 25;
 
 static void body_destroy(struct body *body)
 {
@@ -32,7 +32,7 @@ bool vox_body_has(const struct body *body, const uint8_t *material)
     return body->complete && memcmp(body->material, material, (size_t)body->model->cells) == 0;
 }
 
-/* Wait until no other thread uses the spares: for less than a microsecond. */
+/* Wait until no other thread uses the spares: while it compares the materials of a few bodies. */
 static void lock(struct spares *spares)
 {
     while (atomic_flag_test_and_set_explicit(&spares->busy, memory_order_acquire)) continue;
@@ -64,10 +64,15 @@ struct body *vox_body_take(const vox_model *model, const uint8_t *material)
     return found ? found : body_create(model);
 }
 
-static size_t memory_of(const struct spares *spares)
+static size_t memory_of(const struct body *body)
+{
+    return body->memory_size + vox_contacts_memory(body) + vox_surface_memory(body);
+}
+
+static size_t memory_of_all(const struct spares *spares)
 {
     size_t sum = 0;
-    for (int64_t i = 0; i < spares->n; i++) sum += spares->bodies[i]->memory_size;
+    for (int64_t i = 0; i < spares->n; i++) sum += memory_of(spares->bodies[i]);
     return sum;
 }
 
@@ -77,12 +82,12 @@ void vox_body_return(const vox_model *model, struct body *body)
     struct body *surplus[MOST_SPARES];
     int n = 0;
     if (!body) return;
-    if (body->memory_size > MOST_SPARE_MEMORY) {
+    if (memory_of(body) > MOST_SPARE_MEMORY) {
         body_destroy(body);
         return;
     }
     lock(spares);
-    while (spares->n == MOST_SPARES || memory_of(spares) + body->memory_size > MOST_SPARE_MEMORY)
+    while (spares->n == MOST_SPARES || memory_of_all(spares) + memory_of(body) > MOST_SPARE_MEMORY)
         surplus[n++] = take_out(spares, 0);
     spares->bodies[spares->n++] = body;
     unlock(spares);

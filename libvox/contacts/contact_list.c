@@ -74,6 +74,17 @@ void vox_contacts_destroy(struct contacts *contacts)
     vox_grid_destroy(&contacts->grid);
 }
 
+size_t vox_contacts_memory(const struct body *body)
+{
+    const struct contacts *contacts = &body->contacts;
+    const int64_t n_pairs =
+        contacts->first.capacity + contacts->now.capacity + contacts->watch.pairs.capacity;
+    const int64_t groups = contacts->watch.begin ? (body->model->largest2 + 1) * DEPTHS : 0;
+    return vox_near_by_memory(body) + (size_t)n_pairs * sizeof(struct pair) +
+           (size_t)groups * sizeof *contacts->watch.begin +
+           (size_t)contacts->grid.most_cubes * sizeof *contacts->grid.begin;
+}
+
 /* ---- building a list ------------------------------------------------------------------------- */
 
 struct limits vox_contacts_limits(const vox_model *model)

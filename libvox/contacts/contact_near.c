@@ -261,6 +261,17 @@ enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_
     return VOX_OK;
 }
 
+size_t vox_near_by_memory(const struct body *body)
+{
+    const struct near_by *near_by = &body->contacts.near_by;
+    const size_t n_words = (size_t)(body->model->vicinity.n_places * words_of(body));
+    return (size_t)near_by->pairs.capacity * sizeof *near_by->pairs.list +
+           (size_t)near_by->pairs.n * sizeof *near_by->distance2 +
+           n_words * sizeof *near_by->joined + (size_t)body->n_box_cells * sizeof *near_by->begin +
+           (size_t)body->n_slots *
+               (sizeof *near_by->search.reached + sizeof *near_by->search.queue);
+}
+
 void vox_near_by_destroy(struct near_by *near_by)
 {
     free_bits(near_by);

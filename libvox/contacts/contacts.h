@@ -139,6 +139,9 @@ bool vox_pairs_reserve(struct pairs *pairs, int64_t capacity);
 enum vox_status vox_near_by_shape(const struct body *body, struct near_by *near_by);
 void vox_near_by_destroy(struct near_by *near_by);
 
+/* Return the approximate size of its arrays, bytes; likewise the function of all contacts. */
+size_t vox_near_by_memory(const struct body *body);
+
 /* Return whether two voxels, first < second, can ever be listed: not closely connected by bonds,
  * and not both clamped. */
 bool vox_near_by_may_collide(const struct body *body, struct near_by *near_by, struct pair pair);
@@ -159,6 +162,8 @@ void vox_contacts_rest(struct body *body);
 
 /* Free everything but the watch. */
 void vox_contacts_destroy(struct contacts *contacts);
+
+size_t vox_contacts_memory(const struct body *body);
 
 /* Rebuild the list of contact candidates if it is due; return false if there are too many. */
 bool vox_contacts_refresh(struct body *body);

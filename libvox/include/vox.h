@@ -5,7 +5,7 @@
  * into the caller's buffers. The library prints nothing, has no global state and trusts no input:
  * every call checks its arguments before simulating and returns a status. A body requires memory
  * for its bounding box: about 1000 bytes per cell, 1400 if its materials differ, and more for
- * contacts. A model keeps up to eight bodies, and at most about 64 MiB, for later calls.
+ * contacts. A model keeps up to eight bodies, and at most about 32 MiB, for later calls.
  *
  * Units: meter, second, kilogram, pascal, degree; phases in cycles. Arrays over cells have x
  * fastest, then y, then z, and a batch is body after body.
@@ -143,7 +143,7 @@ struct vox_settings {
     int32_t kernel;     /* 0: the fastest for this processor; else a number of
                            vox_kernel_name */
     int32_t whole_body; /* 0: compute only what can affect the samples; else all steps of all
-                           voxels, which changes no bit of the samples, but see diverged_step */
+                           voxels; see docs/solver.md, and diverged_step below */
     /* divergence */
     double largest_strain;   /* absolute, of a bond; 0 < . <= 1e9 */
     double largest_distance; /* of a voxel from its start, in longest edges of the canvas;
@@ -194,7 +194,7 @@ void vox_model_destroy(vox_model *model); /* NULL is allowed */
 enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const uint8_t *material,
                                double *dt, int64_t *steps, int64_t *culprit);
 
-/* Simulate a batch to the end of the duration.
+/* Simulate a batch up to the last sample; with whole_body, to the end of the duration.
  *
  * material      [n_bodies][cells] material codes
  * phase_cycles  [n_bodies][cells] phase lead of each voxel's actuation, cycles, -1e6 .. 1e6;
@@ -204,9 +204,9 @@ enum vox_status vox_time_steps(const vox_model *model, int64_t n_bodies, const u
  * diverged_step [n_bodies] 0, or the step (from 1) at which the body diverged: the step resulted in
  *               a NaN or in a distance beyond largest_distance, or it started with a strain beyond
  *               largest_strain or with twice as many contact candidates as in a lattice without
- *               gaps. Such a body stops; the others are not affected. What cannot affect a sample
- *               is not computed and does not diverge, unless whole_body is set or the body is
- *               `repeated`.
+ *               gaps. Such a body stops; the others are not affected. What is not computed does
+ *               not diverge. Unless whole_body is set, voxels that cannot affect a sample are left
+ *               out where this saves work and no law forbids it (docs/solver.md).
  * repeated      [n_bodies] 1 if another list of contacts could have affected the samples, so that
  *               the whole body was simulated again, else 0; NULL is allowed
  *

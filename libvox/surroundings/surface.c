@@ -175,6 +175,16 @@ enum vox_status vox_surface_shape(struct body *body)
     return place_facets(body);
 }
 
+size_t vox_surface_memory(const struct body *body)
+{
+    const struct surface *surface = &body->surface;
+    const size_t n = (size_t)body->census.n_voxels, n_slots = (size_t)body->n_slots;
+    if (!surface->reach) return 0;
+    return n_slots * (sizeof *surface->corners_of + sizeof *surface->reach) +
+           8 * n * (sizeof *surface->share + sizeof *surface->corners) +
+           6 * n * sizeof *surface->facets;
+}
+
 void vox_surface_destroy(struct surface *surface)
 {
     free(surface->corners_of);

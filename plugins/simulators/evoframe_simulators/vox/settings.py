@@ -83,8 +83,8 @@ class VoxSettings:
             the canvas, beyond which the body counts as diverged.
         whole_body: Whether to simulate the whole body for the whole duration, so that a divergence anywhere
             counts. Otherwise only what can affect the recorded samples is simulated, and a body that diverges
-            out of their reach has not diverged (docs/solver.md, "What is not computed"). Samples are the
-            same, bit for bit.
+            out of their reach has not diverged. Samples are the same, bit for bit, under the assumptions of
+            docs/solver.md, "What is not computed".
     """
 
     duration: float = attrs.field(default=0.07, validator=VALID_SETTING["duration"])
