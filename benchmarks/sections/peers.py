@@ -95,7 +95,7 @@ def _mujoco(effort: Effort) -> Table:
             "stable one; with the implicit integrator, the interval of the samples. Not comparable: "
             "tetrahedra are finite elements, without rotations of voxels and without damping; the bar of "
             "MuJoCo swings, since a flex cannot contract. MuJoCo also compiles each body in "
-            f"{about['compiling']:.2g} s, while the times of evoframe include all of its set-up.",
+            f"{about['compiling']:.2g} s, while evoframe keeps the bodies that it simulates again.",
         )
 
 

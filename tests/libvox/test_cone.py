@@ -7,11 +7,20 @@ which this happens are simulated again as a whole, and say so with ``Result.repe
 from collections.abc import Callable
 from typing import Any
 
+import attrs
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from numpy.typing import NDArray
-from soft_bodies import CONTACTS, SURROUNDINGS, Bytes, Case, Floats, assert_same_as_whole, cases
+from soft_bodies import (
+    CONTACTS,
+    SURROUNDINGS,
+    Bytes,
+    Case,
+    Floats,
+    assert_same_as_whole,
+    cases,
+)
 
 from evoframe_libvox import FIX_ALL, KERNELS, Material, Model, Result, Track
 
@@ -42,10 +51,11 @@ def assert_nothing_is_missing(
 
 
 numbers = st.lists(st.integers(0, 30), min_size=1, max_size=3)
+few_steps = st.lists(st.integers(1, 9), min_size=1, max_size=3)  # less than the length of the body
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-@given(case=cases(CONTACTS, LONG), numbers=numbers, record=st.sampled_from(RECORDS))
+@given(case=cases(CONTACTS, LONG, (10, 1, 1)), numbers=few_steps, record=st.sampled_from(RECORDS))
 def test_what_is_left_out_changes_no_bit(
     kernel: str, case: Case, numbers: list[int], record: tuple[Track, ...]
 ) -> None:
@@ -234,6 +244,20 @@ def test_a_body_with_other_contacts_is_simulated_again(case: Case, last: int, ke
     assert usual.repeated.tolist() == [True]
     assert whole.diverged_step.tolist() == [0]
     assert_same_as_whole(usual, whole, [last])
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_a_body_with_dampers_that_are_too_strong_is_computed_whole(kernel: str) -> None:
+    """It diverges far from the tip, three steps before the sample."""
+    usual = gust().simulate([20], ("tip",), kernel=kernel)
+    whole = gust().simulate([20], ("tip",), kernel=kernel, whole_body=True)
+    assert usual.diverged_step.tolist() == whole.diverged_step.tolist() == [17]
+    assert usual.repeated.tolist() == [False]
+    # with weaker dampers, a divergence there is not even computed
+    weaker = attrs.evolve(gust(), options=gust().options | {"bond_damping": 1.0, "largest_strain": 0.01})
+    usual = weaker.simulate([20], ("tip",), kernel=kernel)
+    whole = weaker.simulate([20], ("tip",), kernel=kernel, whole_body=True)
+    assert (usual.diverged_step[0], whole.diverged_step[0]) == (0, 6)
 
 
 @pytest.mark.parametrize(("case", "last"), REPEATED.values(), ids=REPEATED.keys())

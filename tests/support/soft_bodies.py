@@ -65,14 +65,18 @@ class Case:
 # ---- strategies
 
 
-def bodies(codes: list[int], longest: Canvas = (7, 5, 5)) -> st.SearchStrategy[tuple[Bytes, Floats, Bytes]]:
+def bodies(
+    codes: list[int], longest: Canvas = (7, 5, 5), shortest: Canvas = (1, 1, 1)
+) -> st.SearchStrategy[tuple[Bytes, Floats, Bytes]]:
     """Draw materials, phases in cycles and fixed degrees of freedom as arrays over one canvas."""
-    return _bodies(codes, longest)
+    return _bodies(codes, longest, shortest)
 
 
 @st.composite
-def _bodies(draw: st.DrawFn, codes: list[int], longest: Canvas) -> tuple[Bytes, Floats, Bytes]:
-    canvas = draw(st.tuples(*(st.integers(1, n) for n in longest)))
+def _bodies(
+    draw: st.DrawFn, codes: list[int], longest: Canvas, shortest: Canvas
+) -> tuple[Bytes, Floats, Bytes]:
+    canvas = draw(st.tuples(*map(st.integers, shortest, longest)))
     body = draw(arrays.arrays(np.uint8, canvas, elements=st.sampled_from([0, *codes, *codes])))
     body[-1, 0, 0] = codes[0]
     cycles = st.integers(-40, 40).map(lambda n: n / 16)
@@ -125,13 +129,15 @@ CONTACTS: dict[str, st.SearchStrategy[Any]] = {
 
 
 def cases(
-    settings: dict[str, st.SearchStrategy[Any]] | None = None, longest: Canvas = (7, 5, 5)
+    settings: dict[str, st.SearchStrategy[Any]] | None = None,
+    longest: Canvas = (7, 5, 5),
+    shortest: Canvas = (1, 1, 1),
 ) -> st.SearchStrategy[Case]:
     """Draw a body with optional *settings*, which are :data:`SURROUNDINGS` by default."""
     options = st.fixed_dictionaries({}, optional=SURROUNDINGS if settings is None else settings)
     return st.one_of(
         *(
-            st.builds(_case, st.just(palette), bodies(codes, longest), options)
+            st.builds(_case, st.just(palette), bodies(codes, longest, shortest), options)
             for palette, codes in ((ALIKE, [1, 3]), (DIFFERENT, [1, 3, 7]))
         )
     )
