@@ -4,7 +4,7 @@
 """
 
 import os
-import platform
+import sysconfig
 from pathlib import Path
 
 from cffi import FFI
@@ -16,7 +16,7 @@ FLAGS = (
     "-fvisibility=hidden",  # an extension exports only its init function
     "-fno-wrapv",  # Python's own flag -fwrapv hides from the compiler that indices do not overflow
     # Arrange instructions as processors with wide vectors prefer; no other instructions are used.
-    *(["-mtune=skylake-avx512"] if platform.machine() in ("x86_64", "AMD64") else []),
+    *(["-mtune=skylake-avx512"] if sysconfig.get_platform() == "linux-x86_64" else []),
 )
 SANITIZE_FLAGS = (
     *("-O1", "-g", "-fno-omit-frame-pointer"),

@@ -217,7 +217,7 @@ static bool far_are_apart(const struct body *body, double limit, double touching
     return touching + way_in(body, closest) < radius && touching + way_in(body, longest) < farther;
 }
 
-/* Find the distances for the next function. */
+/* Find the smallest distances at rest for all_are_apart(). */
 static void measure(const struct body *body, struct watch *watch)
 {
     const double edge = body->model->settings.voxel_size, radius = near_radius(body->model) / edge;
@@ -239,8 +239,8 @@ static void measure(const struct body *body, struct watch *watch)
     watch->measured = true;
 }
 
-/* Return the same, because of the distances at rest of all pairs of voxels whose depths differ by
- * the same number of steps. */
+/* Like far_are_apart(), but from the smallest distance at rest of the pairs of voxels whose depths
+ * differ by the same number of steps. */
 static bool all_are_apart(const struct body *body, struct watch *watch, double touching)
 {
     const double edge = body->model->settings.voxel_size;

@@ -74,7 +74,7 @@ IN_LOOP double sine(double x)
     const double n = (x * 0.3183098861837907 + whole) - whole, half = 0.5 * n;
     const bool odd = (half + whole) - whole != half;
     const double near = ((x - n * first) - n * second) - n * third;
-    /* false only for absurdly large x */
+    /* false only for very large x */
     const double r = choose(fabs(near) <= 1.6, near, 0.0), y = r * r;
     const double high =
         1.0 / 6227020800.0 +

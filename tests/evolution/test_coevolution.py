@@ -196,7 +196,7 @@ def test_the_state_is_that_before_breeding(toy_config: Load) -> None:
     assert states[0] == states[1]  # with one generation, no population breeds in the last turn
 
 
-def test_meanwhile_sees_the_state_of_the_turn_before(toy_config: Load) -> None:
+def test_the_state_while_simulating_is_that_of_the_turn_before(toy_config: Load) -> None:
     coevolution = assemble(toy_config())
     seen: list[Any] = []
     expected: list[Any] = []
@@ -204,7 +204,7 @@ def test_meanwhile_sees_the_state_of_the_turn_before(toy_config: Load) -> None:
         if turn.index < coevolution.length:
             unchanged = "ab"[(turn.index + 1) % 2]  # the next turn is that of the other population
             expected.append(coevolution.state([unchanged]))
-            coevolution.meanwhile = lambda name=unchanged: seen.append(coevolution.state([name]))  # type: ignore[misc]
+            coevolution.on_simulating = lambda name=unchanged: seen.append(coevolution.state([name]))  # type: ignore[misc]
     assert seen == expected
 
 

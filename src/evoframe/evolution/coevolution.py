@@ -56,8 +56,8 @@ class Coevolution:
         aggregator: Aggregates the scores of an individual into its fitness.
         evaluator: Scores designs.
         generations: Generations per population.
-        meanwhile: Called in each turn while the workers simulate, to complete what concerns the turn before.
-            The populations are those of that turn, except the one that has reproduced since.
+        on_simulating: Called in each turn while the workers simulate, to complete what concerns the turn
+            before. The populations are those of that turn, except the one that has reproduced since.
         turn: Index of the latest turn; -1 before the first.
         best_score: Best score of a pair so far.
     """
@@ -67,7 +67,7 @@ class Coevolution:
     aggregator: Aggregator
     evaluator: Evaluator
     generations: int
-    meanwhile: Callable[[], None] = attrs.field(default=lambda: None, init=False)
+    on_simulating: Callable[[], None] = attrs.field(default=lambda: None, init=False)
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
     _fittest_have_met: bool = attrs.field(default=False, init=False)
@@ -180,7 +180,7 @@ class Coevolution:
     ) -> Turn:
         """Score the unique *meetings* of a turn, and set the fitness of the *judged* populations."""
         simulated = self.evaluator.simulations
-        scores = self._scores(meetings, self._use_time_of_simulations)
+        scores = self._scores(meetings, self._while_simulating)
         for index in judged:
             self._judge(index, scores, fold)
         pairs = self._pairs(scores)
@@ -199,9 +199,9 @@ class Coevolution:
             ),
         )
 
-    def _use_time_of_simulations(self) -> None:
+    def _while_simulating(self) -> None:
         """Complete what concerns the turn before, and breed the population that reproduces in the next."""
-        self.meanwhile()
+        self.on_simulating()
         if 0 <= self.turn < self.length - 1:
             self.populations[(self.turn + 1) % len(self.populations)].breed()
 
@@ -216,7 +216,7 @@ class Coevolution:
         population.judge(fitness, floor)
 
     def _scores(
-        self, meetings: Collection[Meeting], meanwhile: Callable[[], None] = lambda: None
+        self, meetings: Collection[Meeting], on_simulating: Callable[[], None] = lambda: None
     ) -> dict[Meeting, Score]:
         """Return the scores of unique meetings; pairs of recent turns are not evaluated again."""
         recent = dict(ChainMap(*self._recent))  # an id stands for one genome
@@ -226,7 +226,7 @@ class Coevolution:
         unknown = sorted(set(meetings) - known.keys())
         with self._naming_individuals(unknown):
             designs = decoded_designs(self.populations, unknown)
-            scores = self.evaluator.evaluate(designs, len(unknown), meanwhile)
+            scores = self.evaluator.evaluate(designs, len(unknown), on_simulating)
         known.update(zip(unknown, scores, strict=True))
         return {meeting: known[meeting] for meeting in meetings}
 

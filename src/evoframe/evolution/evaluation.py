@@ -51,21 +51,21 @@ class Evaluator:
     _cache: dict[bytes, Score] = attrs.field(factory=dict, init=False, repr=False)
 
     def evaluate(
-        self, designs: Iterable[Design], count: int, meanwhile: Callable[[], None] = lambda: None
+        self, designs: Iterable[Design], count: int, on_simulating: Callable[[], None] = lambda: None
     ) -> list[Score]:
         """Return the score of each design; equal designs are simulated once, across all calls.
 
         Args:
             designs: The designs, consumed one by one while earlier ones are simulated.
             count: Number of designs.
-            meanwhile: Called once in this thread, when the workers have enough to simulate. If it raises, no
-                further designs are simulated, and the exception propagates.
+            on_simulating: Called once in this thread, when the workers have enough to simulate. If it
+                raises, no further designs are simulated, and the exception propagates.
 
         Raises:
             ComponentError: A component failed or returned an invalid result.
         """
         keys: list[bytes] = []
-        interlude = _Interlude(meanwhile)
+        interlude = _Interlude(on_simulating)
         with blaming("executor"), _locating_designs(keys):
             simulation = _Simulation(self.simulator, self.objective)
             batches = interlude.inserted(self._batches(designs, count, keys), self._batches_ahead)

@@ -78,7 +78,7 @@ class Execution:
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
         unit = unit_of(self.config.objective.component)
         saving = _Saving(self._store, self._coevolution.state, observers, unit)
-        self._coevolution.meanwhile = saving.complete
+        self._coevolution.on_simulating = saving.complete
         try:
             for turn in self._coevolution:
                 saving.begin(turn)
