@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
-from soft_bodies import EDGE as L, Case, assert_same, cases
+from soft_bodies import EDGE as L, TRACKS, Case, assert_same, cases
 
 from evoframe_libvox import KERNELS, Material, Model, Result
 
@@ -100,6 +100,21 @@ def test_bonds_that_turn_by_more_than_half_a_turn(small_model: ModelMaker, seed:
         result = model.simulate(np.ones((1, *canvas), np.uint8), phase, [280], ["voxels"])
         assert result.diverged_step.tolist() == [0]
         assert np.isfinite(result.tracks["voxels"]).all()
+
+
+@given(cases())
+def test_a_body_does_not_depend_on_the_previous_one(case: Case) -> None:
+    """Compare a batch of alternating bodies and controllers with each one alone in a new model."""
+    body, phase = case.body, case.phase
+    other = np.where(body, body[::-1], 0).astype(np.uint8)
+    other[-1, 0, 0] = body[-1, 0, 0]
+    batch, phases = np.stack([body, body, other, body]), np.stack([phase, -phase, phase, phase])
+    steps = case.model().time_steps(batch)[1].min()
+    together = case.model().simulate(batch, phases, [0, steps], TRACKS)
+    for i in range(4):
+        alone = case.model().simulate(batch[i : i + 1], phases[i : i + 1], [0, steps], TRACKS)
+        for track in TRACKS:
+            assert np.array_equal(alone.tracks[track][0], together.tracks[track][i], equal_nan=True)
 
 
 def test_a_kernel_can_be_chosen(small_model: ModelMaker, monkeypatch: pytest.MonkeyPatch) -> None:
