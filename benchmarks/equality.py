@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 import evoframe
 from benchmarks.recording import Batch, recording
-from benchmarks.subjects import canvas, objective, published, vox
+from benchmarks.subjects import canvas, objective, published, solver, vox
 from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, PASSIVE
-from evoframe_libvox import KERNELS, Model
-from evoframe_simulators.vox import Vox, clocks_of, fixed_mask, model_of
+from evoframe_libvox import KERNELS
+from evoframe_simulators.vox import Vox, clocks_of
 
 _CHUNK = 100  # bodies at a time
 
@@ -101,7 +101,9 @@ def _phases(rng: np.random.Generator, size: int) -> NDArray[np.float64]:
 
 def compared(bodies: Bodies, kernel: str) -> Counter[str]:
     """Return the numbers of bodies, of different ones, and of repeated and diverged ones."""
-    usual, whole = (_solver(bodies.simulator, kernel, whole_body=whole_body) for whole_body in (False, True))
+    usual, whole = (
+        solver(bodies.simulator, kernel=kernel, whole_body=whole_body) for whole_body in (False, True)
+    )
     record = objective().record
     steps = np.stack([clock.samples(record) for clock in clocks_of(bodies.simulator, usual, bodies.material)])
     one = usual.simulate(bodies.material, bodies.phase, steps, ["tip"])
@@ -114,12 +116,6 @@ def compared(bodies: Bodies, kernel: str) -> Counter[str]:
         repeated=int(one.repeated.sum()),
         diverged=int(diverged.sum()),
     )
-
-
-def _solver(simulator: Vox, kernel: str, *, whole_body: bool) -> Model:
-    usual = model_of(simulator, canvas())
-    fixed = fixed_mask(simulator.fixed, canvas())
-    return Model(usual.canvas, usual.palette, usual.settings, fixed, kernel=kernel, whole_body=whole_body)
 
 
 def main() -> None:

@@ -29,6 +29,7 @@ __all__ = [
     "published",
     "random_designs",
     "solid",
+    "solver",
     "solving",
     "traveler",
     "vox",
@@ -77,6 +78,11 @@ def model(
         **changes: Other settings of the solver.
     """
     simulator = attrs.evolve(vox(), expansion_coefficient=0.0) if passive else vox()
+    return solver(simulator, kernel=kernel, whole_body=whole_body, **changes)
+
+
+def solver(simulator: Vox, *, kernel: str | None, whole_body: bool, **changes: Any) -> Model:
+    """Return the solver's model of a simulator on the canvas of ``paper``, as :func:`model`."""
     usual = model_of(simulator, canvas())
     return Model(
         usual.canvas,

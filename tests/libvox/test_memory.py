@@ -1,9 +1,9 @@
 """Memory of the bodies that a model keeps for later calls."""
 
-import subprocess
 import sys
 
 import pytest
+from processes import python
 
 MOST = 80  # MB: 32 MiB of kept bodies, and the one in use
 
@@ -30,5 +30,6 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the unit of ru_maxrss differs")
 def test_kept_bodies_have_a_limit_with_their_contacts() -> None:
-    result = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
-    assert int(result.stdout) / 1000 < MOST
+    ran = python("-c", PROGRAM)
+    assert ran.returncode == 0, ran.stderr
+    assert int(ran.stdout) / 1000 < MOST
