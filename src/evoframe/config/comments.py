@@ -12,7 +12,6 @@ from evoframe.config.options import Option, options_of, summary_of
 from evoframe.contract import (
     COMPONENTS,
     POPULATION_COMPONENTS,
-    Chosen,
     PluginSettings,
     PopulationConfig,
     RunConfig,
@@ -67,8 +66,10 @@ def _section(path: str, table: Tree, class_: type, *, active: bool) -> Iterator[
     yield f"[{path}]"
     if "name" in table:
         yield f"name = {_inline(table['name'])}"
-    options = {name: option for name, option in options_of(class_).items() if option.table is not Chosen}
-    nested = [name for name in options if isinstance(table.get(name), Mapping)]
+    options = {
+        name: option for name, option in options_of(class_).items() if not _has_own_section(class_, name)
+    }
+    nested = [n for n, option in options.items() if option.table and isinstance(table.get(n), Mapping)]
     for name, option in options.items():
         if name not in nested:
             yield from _option(name, table.get(name), option, active=active)
@@ -76,6 +77,10 @@ def _section(path: str, table: Tree, class_: type, *, active: bool) -> Iterator[
         inner = options[name].table
         if inner is not None:
             yield from _section(f"{path}.{name}", table[name], inner, active=active)
+
+
+def _has_own_section(class_: type, option: str) -> bool:
+    return class_ is PopulationConfig and option in POPULATION_COMPONENTS
 
 
 def _option(name: str, value: Any, option: Option, *, active: bool) -> Iterator[str]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from types import UnionType
+from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 import attrs
 from attrs import validators
@@ -27,7 +28,7 @@ from evoframe.contract import (
 from evoframe.documents import Fault, StructureError, Tree, structure
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import found
-from evoframe.registry import KINDS, Offer, Plugins, discover
+from evoframe.registry import KINDS, Offer, Plugins, discover, kind_of
 
 __all__ = ["load_config", "named_simulator", "resolve_layers", "resolve_simulator"]
 
@@ -200,12 +201,34 @@ class _Reading:
         except ConfigurationError as error:
             self.faults.append(Fault(path, str(error)))
             return None
-        component = self._structured(options, offer.component, path)
+        faults = len(self.faults)
+        options = self._with_nested(plugins, offer.component, options, path)
+        component = self._structured(options, offer.component, path) if len(self.faults) == faults else None
         if component is None:
             return None
         violations = [Fault(path, message) for message in _violations(offer, component)]
         self.faults += violations
         return None if violations else Chosen(table["name"], component, offer.source)
+
+    def _with_nested(self, plugins: Plugins, class_: type[Any], options: Tree, path: tuple[str, ...]) -> Tree:
+        """Return the options of a component with those that are components themselves chosen."""
+        complete = dict(options)
+        for name, kind, several in _nested_options(class_):
+            given = complete.get(name)
+            if several and isinstance(given, list | tuple):
+                places = [(*path, f"{name}[{index}]") for index in range(len(given))]
+                complete[name] = [
+                    self._nested(plugins, kind, table, place)
+                    for table, place in zip(given, places, strict=True)
+                ]
+            elif not several and given is not None:
+                complete[name] = self._nested(plugins, kind, given, (*path, name))
+        return complete
+
+    def _nested(self, plugins: Plugins, kind: str, table: Any, path: tuple[str, ...]) -> Any:
+        if isinstance(table, Chosen):  # from Python
+            return table
+        return self.chosen(plugins, kind, {"name": table} if isinstance(table, str) else table, path)
 
     def _structured(self, value: Any, class_: type[C], path: tuple[str, ...]) -> C | None:
         try:
@@ -318,13 +341,24 @@ class _Checks:
             yield from _refusal(("objective",), check, involves=("simulator",))
 
 
+def _nested_options(class_: type[Any]) -> Iterator[tuple[str, str, bool]]:
+    """Yield the options that choose components: name, kind, and whether it is a list of them."""
+    try:
+        hints = get_type_hints(class_)
+    except NameError:  # an annotation that only a type checker can resolve
+        return
+    for name, hint in hints.items():
+        types = [argument for argument in get_args(hint) if argument is not type(None)]
+        several = get_origin(hint) is tuple
+        alias = types[0] if types and (several or get_origin(hint) in (Union, UnionType)) else hint
+        if get_origin(alias) is Chosen and (kind := kind_of(get_args(alias)[0])):
+            yield name, kind, several
+
+
 def _violations(offer: Offer, component: Any) -> Iterator[str]:
     """Yield the violations of the protocol of a component's kind."""
     where = f"{offer.kind} '{offer.name}' of plugin {offer.source}"
-    protocol = KINDS[offer.kind].protocol
-    members = sorted(name for name in dir(protocol) if not name.startswith("_"))
-    missing = [name for name in members if not hasattr(component, name)]
-    if missing:
+    if missing := KINDS[offer.kind].missing(component):
         yield f"{where} lacks {', '.join(missing)}"
     if not attrs.inspect(type(component)).is_frozen:
         yield f"{where} is not a frozen attrs class, so its options could change during a run"

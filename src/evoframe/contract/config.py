@@ -118,6 +118,24 @@ class Chosen(Generic[C]):
     component: C
     source: Source
 
+    def as_table(self) -> Tree:
+        """Return the table that chooses the component, with all its options."""
+        options: Tree = unstructure(self.component)
+        return {"name": self.name, **options}
+
+    def nested(self, key: str) -> Iterator[tuple[str, Chosen[Any]]]:
+        """Yield this component and those among its options, each with its dotted key; its own is *key*."""
+        yield key, self
+        component: Any = self.component
+        for field in attrs.fields(type(component)):
+            value = getattr(component, field.name)
+            if isinstance(value, Chosen):
+                yield from value.nested(f"{key}.{field.name}")
+            elif isinstance(value, tuple):
+                for index, item in enumerate(value):
+                    if isinstance(item, Chosen):
+                        yield from item.nested(f"{key}.{field.name}[{index}]")
+
 
 @attrs.frozen
 class PopulationConfig:
@@ -161,16 +179,16 @@ class RunConfig:
     label: str = attrs.field(default="run", eq=False)
 
     def components(self) -> Iterator[tuple[str, Chosen[Any]]]:
-        """Yield every chosen component with its dotted key."""
+        """Yield every chosen component with its dotted key, those among options of others included."""
         for role, population in self.populations.items():
-            yield f"populations.{role}.encoder", population.encoder
-            yield f"populations.{role}.evolver", population.evolver
+            for key in POPULATION_COMPONENTS:
+                yield from getattr(population, key).nested(f"populations.{role}.{key}")
         for key in COMPONENTS:
-            yield key, getattr(self, key)
+            yield from getattr(self, key).nested(key)
 
     def tables(self) -> Tree:
         """Return the configuration as TOML tables that include every default."""
-        return self._tables(_table)
+        return self._tables(Chosen.as_table)
 
     def recorded(self) -> Tree:
         """Return the tables that a run records: without options of :data:`ADDED_LATER` at their default."""
@@ -216,11 +234,6 @@ def is_role(name: str) -> bool:
     return re.fullmatch(r"[a-z][a-z0-9_-]*", name) is not None
 
 
-def _table(chosen: Chosen[Any]) -> Tree:
-    options: Tree = unstructure(chosen.component)
-    return {"name": chosen.name, **options}
-
-
 def _recorded_table(chosen: Chosen[Any]) -> Tree:
     """Return the table of a component without options that were added later and have their default."""
     later = [
@@ -229,4 +242,4 @@ def _recorded_table(chosen: Chosen[Any]) -> Tree:
         if ADDED_LATER.items() <= field.metadata.items()
     ]
     left_out = {field.name for field in later if getattr(chosen.component, field.name) == field.default}
-    return {key: value for key, value in _table(chosen).items() if key not in left_out}
+    return {key: value for key, value in chosen.as_table().items() if key not in left_out}

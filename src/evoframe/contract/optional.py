@@ -16,27 +16,57 @@ import numpy as np
 from numpy.typing import NDArray
 
 from evoframe.contract.drawings import Geometry, NetworkGraph
-from evoframe.contract.protocols import Aggregator, Encoder, Evolver, Objective, Simulator
-from evoframe.contract.values import Design, Export, FileContents, FileOptions, Record
+from evoframe.contract.protocols import (
+    Aggregator,
+    CollaborationRun,
+    CollaborationStrategy,
+    Encoder,
+    Evolver,
+    EvolverRun,
+    Objective,
+    Simulator,
+)
+from evoframe.contract.values import (
+    ArrayType,
+    Design,
+    Export,
+    FileContents,
+    FileOptions,
+    Judged,
+    Member,
+    Outcome,
+    Record,
+)
 
 __all__ = [
+    "SupportsArrayTypes",
+    "SupportsBatches",
     "SupportsBitGeneration",
+    "SupportsDesignMeasures",
     "SupportsDialects",
     "SupportsDuration",
+    "SupportsEach",
     "SupportsExemptions",
     "SupportsExport",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
+    "SupportsLoad",
+    "SupportsMeasures",
+    "SupportsMemory",
     "SupportsObjective",
+    "SupportsOutcomeMeasures",
     "SupportsOutputNames",
     "SupportsProvenance",
     "SupportsPublished",
     "SupportsRandomControllers",
     "SupportsReading",
+    "SupportsSeeds",
     "SupportsSettings",
+    "SupportsSizes",
     "SupportsUnit",
     "SupportsVariants",
+    "SupportsWants",
     "SupportsWholeDesigns",
     "SupportsWindow",
     "Variant",
@@ -80,6 +110,39 @@ class SupportsExemptions(Aggregator, Protocol):
     @property
     def exempt_from(self) -> Mapping[str, str]:
         """Name of a law (``bounded``, ``idempotent``, ``monotone``) -> reason; a class attribute."""
+
+
+@runtime_checkable
+class SupportsEach(CollaborationStrategy, Protocol):
+    """A strategy that chooses anew for each individual, and may consider who it is.
+
+    Laws: each row obeys the laws of :meth:`CollaborationStrategy.select`, which is not called.
+    """
+
+    def select_each(
+        self, judged: Sequence[Judged], members: Sequence[Member], rng: np.random.Generator
+    ) -> NDArray[np.intp]:
+        """Return the collaborators of each of *judged*, ``intp[len(judged), size(len(members))]``."""
+
+
+@runtime_checkable
+class SupportsMemory(CollaborationStrategy, Protocol):
+    """A strategy with a memory, whose choices depend on earlier turns."""
+
+    def start(self, population: str, other: str) -> CollaborationRun:
+        """Return the choices for the individuals of *population* among those of *other*; both are names."""
+
+
+@runtime_checkable
+class SupportsSizes(CollaborationStrategy, Protocol):
+    """A strategy that does not always choose the same number of collaborators."""
+
+    def sizes(self, n_members: int) -> Sequence[int]:
+        """Return all numbers of collaborators that it may choose from a population of *n_members*.
+
+        Raises:
+            ConfigurationError: The population is too small; the message names both numbers.
+        """
 
 
 @runtime_checkable
@@ -245,6 +308,45 @@ class SupportsPublished(Simulator, Protocol):
 
 
 @runtime_checkable
+class SupportsBatches(Simulator, Protocol):
+    """A simulator that states how many designs it should receive at once."""
+
+    @property
+    def batch_size(self) -> int:
+        """Largest useful number of designs in a call; near the end of a turn, workers share the rest."""
+
+
+@runtime_checkable
+class SupportsMeasures(Simulator, Protocol):
+    """A simulator that measures more than its tracks."""
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Names of the measures that ``measures`` of every outcome contains, unless it diverged."""
+
+
+@runtime_checkable
+class SupportsDesignMeasures(Encoder, Protocol):
+    """An encoder that measures the designs that it decodes, such as the share of filled voxels."""
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Names of the measures."""
+
+    def measure(self, design: Design) -> Mapping[str, float]:
+        """Return all measures of a *design* that :meth:`Encoder.decode` returned; finite."""
+
+
+@runtime_checkable
+class SupportsArrayTypes(Encoder, Protocol):
+    """An encoder that declares type and shape of the arrays that it requires or provides."""
+
+    @property
+    def array_types(self) -> Mapping[str, ArrayType]:
+        """Role -> type and shape of its array; the core checks them before and after decoding."""
+
+
+@runtime_checkable
 class SupportsInputNames(Encoder, Protocol):
     """An encoder that names the inputs of its networks (figures of networks)."""
 
@@ -277,6 +379,61 @@ class SupportsGraph(Evolver, Protocol):
         Raises:
             ValueError: The genome is invalid; the message describes the fault.
         """
+
+
+@runtime_checkable
+class SupportsWants(Evolver, Protocol):
+    """An evolver that uses measures besides the fitness, such as further objectives.
+
+    The core supplies ``age``, ``genome-size`` and ``novelty``; encoder, objective and simulator may supply
+    others. A configuration in which one is missing is refused.
+    """
+
+    @property
+    def wants(self) -> tuple[str, ...]:
+        """Names of the measures that :meth:`EvolverRun.tell` receives."""
+
+
+@runtime_checkable
+class SupportsLoad(EvolverRun, Protocol):
+    """The evolution of a population that can express genomes of archives and of other runs."""
+
+    def load(self, dumped: Any) -> Any:
+        """Return the genome that :meth:`EvolverRun.dump` returned as *dumped*, for :meth:`express`.
+
+        Law: ``dump(load(dumped)) == dumped``, and both genomes express the same network.
+
+        Raises:
+            ValueError: It is not a genome of this population; the message describes the fault.
+        """
+
+
+@runtime_checkable
+class SupportsSeeds(SupportsLoad, Protocol):
+    """The evolution of a population that can start from given genomes."""
+
+    def seed(self, genomes: Sequence[Any]) -> None:
+        """Start from these genomes; called before the first :meth:`ask`, if at all.
+
+        Args:
+            genomes: From :meth:`load`, at least one and at most as many as the population has members. The
+                initial population contains each of them, in this order; mutants of them fill the rest.
+        """
+
+
+@runtime_checkable
+class SupportsOutcomeMeasures(Objective, Protocol):
+    """An objective that computes further scores, such as that of a second objective.
+
+    Those of an individual's meetings are aggregated like its scores, to one value for its evolver.
+    """
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Names of the measures."""
+
+    def measure(self, outcome: Outcome) -> Mapping[str, float]:
+        """Return all measures of an *outcome* that did not diverge; finite."""
 
 
 @runtime_checkable

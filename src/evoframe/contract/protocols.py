@@ -13,11 +13,22 @@ from typing import Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.contract.values import Design, Member, Outcome, Record, Scores
+from evoframe.contract.values import (
+    Choice,
+    Design,
+    Judged,
+    Member,
+    Outcome,
+    Record,
+    ScoredMeetings,
+    Scores,
+)
 
 __all__ = [
     "Aggregator",
+    "CollaborationRun",
     "CollaborationStrategy",
+    "Credit",
     "Encoder",
     "Evolver",
     "EvolverRun",
@@ -62,11 +73,45 @@ class Aggregator(Protocol):
 
 
 @runtime_checkable
+class Credit(Protocol):
+    """Computes the fitness of individuals from all scored meetings of a turn; offered as an aggregator.
+
+    It knows more than an :class:`Aggregator`: whom each individual met, the fitness of these collaborators,
+    and the scores of all others in the same turn. Its fitness need not have the unit of the scores.
+
+    Laws: one finite value for each member, for finite scores up to 1e100; the result does not depend on the
+    order of the meetings, bit for bit.
+    """
+
+    def check(self, n: int) -> None:
+        """Refuse a number of collaborators before anything runs.
+
+        Raises:
+            ConfigurationError: *n* collaborators each give no fitness; names the numbers that do.
+        """
+
+    def credit(self, meetings: ScoredMeetings, population: int) -> NDArray[np.float64]:
+        """Return the fitness of each member of a population, ``float64[present]``.
+
+        Args:
+            meetings: All meetings of the turn. Scores of diverged simulations are NaN.
+            population: Index of the population whose members are credited; each of them has a meeting.
+
+        Returns:
+            One value for each member; that of a member with a diverged simulation is ignored, and can be NaN.
+        """
+
+
+@runtime_checkable
 class CollaborationStrategy(Protocol):
     """Chooses the members of another population with which individuals are evaluated.
 
     Laws: indices are valid, unique, and as many as declared; the same state of *rng* gives the same choice;
     ties are broken by index; a diverged member is chosen only if no other is left.
+
+    Without more, one choice serves a whole turn. It may offer :class:`~evoframe.SupportsEach`, to choose anew
+    for each individual, :class:`~evoframe.SupportsMemory`, to remember earlier turns, and
+    :class:`~evoframe.SupportsSizes`, to choose different numbers in different turns.
     """
 
     def size(self, n_members: int) -> int:
@@ -81,6 +126,43 @@ class CollaborationStrategy(Protocol):
 
 
 @runtime_checkable
+class CollaborationRun(Protocol):
+    """The choices of a strategy for one population among the individuals of another, during a run.
+
+    Laws: collaborators of an individual are different, and as many as the strategy declares; random numbers
+    come only from the given generator; ``restore(state())`` continues bit for bit; a diverged individual is
+    chosen only if no other is left.
+    """
+
+    def choose(
+        self, judged: Sequence[Judged], members: Sequence[Member], rng: np.random.Generator
+    ) -> Sequence[Sequence[Choice]]:
+        """Return the collaborators of each of *judged*: indices of *members*, or archived individuals.
+
+        It can be called several times in a turn, with different individuals or a part of the members.
+        """
+
+    def observe(self, meetings: ScoredMeetings, genome: Callable[[int], Any]) -> None:
+        """See a turn that has ended, whichever population was evaluated in it.
+
+        Args:
+            meetings: The turn. All individuals have the fitness that they have after it.
+            genome: Returns the genome of an individual of the other population as JSON values, by its index
+                in ``meetings.members``.
+        """
+
+    def state(self) -> Any:
+        """Return everything needed to continue, as JSON values."""
+
+    def restore(self, state: Any) -> None:
+        """Continue from what :meth:`state` returned.
+
+        Raises:
+            ValueError: The state is invalid.
+        """
+
+
+@runtime_checkable
 class Encoder(Protocol):
     """Decodes a network into its part of a design.
 
@@ -89,7 +171,8 @@ class Encoder(Protocol):
     In a run, a network that is called again with the same read-only array returns the same values, also
     read-only, without evaluating them again.
 
-    It may offer :class:`~evoframe.SupportsInputNames` and :class:`~evoframe.SupportsOutputNames`.
+    It may offer :class:`~evoframe.SupportsInputNames`, :class:`~evoframe.SupportsOutputNames`,
+    :class:`~evoframe.SupportsArrayTypes` and :class:`~evoframe.SupportsDesignMeasures`.
     """
 
     @property
@@ -117,6 +200,8 @@ class EvolverRun(Protocol):
     """The evolution of one population.
 
     Laws: ``restore(state())`` continues bit for bit; random numbers come only from its own stream.
+
+    It may offer :class:`~evoframe.SupportsLoad` and :class:`~evoframe.SupportsSeeds`.
     """
 
     def ask(self) -> Sequence[Any]:
@@ -131,7 +216,8 @@ class EvolverRun(Protocol):
 
         Args:
             fitness: One value per genome, in the order of :meth:`ask`.
-            measures: Further measures by name, each ``float64[n]``, for evolvers with several objectives.
+            measures: The measures that the evolver wants (:class:`~evoframe.SupportsWants`): name ->
+                ``float64[n]``, finite.
 
         Raises:
             ValueError: The number of values is wrong, or a value is not finite.
@@ -160,7 +246,7 @@ class EvolverRun(Protocol):
 class Evolver(Protocol):
     """Options of an evolutionary algorithm for networks.
 
-    It may offer :class:`~evoframe.SupportsGraph`.
+    It may offer :class:`~evoframe.SupportsGraph` and :class:`~evoframe.SupportsWants`.
     """
 
     def check(self, size: int) -> None:
@@ -190,7 +276,8 @@ class Simulator(Protocol):
     :class:`~evoframe.SupportsObjective`, :class:`~evoframe.SupportsDuration`,
     :class:`~evoframe.SupportsExport`, :class:`~evoframe.SupportsVariants`,
     :class:`~evoframe.SupportsGeometry`, :class:`~evoframe.SupportsRandomControllers`,
-    :class:`~evoframe.SupportsPublished` and :class:`~evoframe.SupportsWholeDesigns`.
+    :class:`~evoframe.SupportsPublished`, :class:`~evoframe.SupportsWholeDesigns`,
+    :class:`~evoframe.SupportsBatches` and :class:`~evoframe.SupportsMeasures`.
     """
 
     @property
@@ -222,7 +309,8 @@ class Objective(Protocol):
 
     Law: the score is finite for every outcome that did not diverge.
 
-    It may offer :class:`~evoframe.SupportsUnit` and :class:`~evoframe.SupportsWindow`.
+    It may offer :class:`~evoframe.SupportsUnit`, :class:`~evoframe.SupportsWindow` and
+    :class:`~evoframe.SupportsOutcomeMeasures`.
     """
 
     @property

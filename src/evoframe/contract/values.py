@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -11,17 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "Archived",
+    "ArrayType",
     "BestPair",
+    "Choice",
     "Design",
     "Export",
     "FileContents",
     "FileOptions",
+    "Judged",
     "Member",
     "Outcome",
     "Pair",
     "PopulationReport",
     "Record",
     "Score",
+    "ScoredMeetings",
     "Scores",
     "Turn",
     "Workload",
@@ -69,6 +75,27 @@ class Design:
 
 
 @attrs.frozen
+class ArrayType:
+    """Type and shape of the array of a role.
+
+    Attributes:
+        dtype: Name of its dtype, such as ``uint8``.
+        shape: Lengths of its axes.
+    """
+
+    dtype: str
+    shape: tuple[int, ...]
+
+    def __str__(self) -> str:
+        return f"{self.dtype}{list(self.shape)}"
+
+    @classmethod
+    def of(cls, array: NDArray[Any]) -> ArrayType:
+        """Return type and shape of *array*."""
+        return cls(array.dtype.name, array.shape)
+
+
+@attrs.frozen
 class Record:
     """The samples that a simulator records.
 
@@ -108,12 +135,14 @@ class Outcome:
         diverged_at: Step at which the simulation diverged, or ``None``. A simulation that cannot start
             diverges at step 0, and may have no samples. It may have diverged out of reach of the samples
             without being reported (:class:`Record`).
+        measures: Measures by name that the simulator declares (:class:`~evoframe.SupportsMeasures`).
     """
 
     steps: NDArray[np.int64]
     times: NDArray[np.float64]
     tracks: Mapping[str, NDArray[np.float64]]
     diverged_at: int | None = None
+    measures: Mapping[str, float] = attrs.field(factory=dict)
 
 
 @attrs.frozen
@@ -183,6 +212,68 @@ class Member:
     diverged: bool = False
 
 
+@attrs.frozen(eq=False)
+class Archived:
+    """An individual that need not be a member of its population any more, as an archive keeps it.
+
+    Attributes:
+        member: The individual as it was when it was archived.
+        genome: Its genome as JSON values (see :meth:`EvolverRun.dump`).
+    """
+
+    member: Member
+    genome: Any = attrs.field(repr=False)
+
+
+Choice: TypeAlias = int | Archived
+"""A collaborator: the index of a member, or an archived individual."""
+
+
+@attrs.frozen
+class Judged:
+    """An individual that is about to be evaluated, as collaboration strategies see it.
+
+    Attributes:
+        member: The individual; its fitness is ``None`` if it is new.
+        collaborators: Ids of the collaborators from the other population in its last evaluation; empty if it
+            is new.
+    """
+
+    member: Member
+    collaborators: tuple[int, ...] = ()
+
+
+@attrs.frozen(eq=False)
+class ScoredMeetings:
+    """The scored meetings of a turn: who met whom, and the scores.
+
+    Attributes:
+        turn: Index of the turn.
+        populations: Names of the populations, in the order of decoding.
+        members: The individuals of each population that could take part: first all its members, then archived
+            individuals. Those that are evaluated in this turn have the fitness of their last evaluation, or
+            ``None``, while their credit is computed.
+        present: Number of members of each population; further individuals are archived ones.
+        meetings: ``intp[n, populations]``: for each meeting and population, an index in its ``members``.
+            Meetings are unique.
+        scores: ``float64[n]``, in the objective's unit; NaN if the simulation diverged.
+    """
+
+    turn: int
+    populations: tuple[str, ...]
+    members: tuple[tuple[Member, ...], ...] = attrs.field(repr=lambda members: str(list(map(len, members))))
+    present: tuple[int, ...]
+    meetings: NDArray[np.intp] = attrs.field(repr=_count)
+    scores: NDArray[np.float64] = attrs.field(repr=_count)
+
+    def of(self, population: int) -> list[NDArray[np.intp]]:
+        """Return for each member of a population the indices of its meetings, in their order."""
+        who = self.meetings[:, population]
+        order = np.argsort(who, kind="stable").astype(np.intp)
+        ends = np.searchsorted(who[order], np.arange(self.present[population] + 1))
+        return [order[start:end] for start, end in itertools.pairwise(ends)]
+
+
 @attrs.frozen
 class Score:
     """The score of a design.
@@ -192,11 +283,13 @@ class Score:
         diverged_at: Step at which the simulation diverged, or ``None``.
         window: First and last simulated time on which the score depends, s; ``None`` if the simulation
             diverged. Scores are compared without it.
+        measures: Further measures by simulator and objective, by name; empty if the simulation diverged.
     """
 
     value: float | None
     diverged_at: int | None = None
     window: tuple[float, float] | None = attrs.field(default=None, eq=False, repr=False)
+    measures: Mapping[str, float] = attrs.field(factory=dict, eq=False, repr=False)
 
 
 @attrs.frozen
@@ -247,6 +340,7 @@ class PopulationReport:
             exceeds it (as in the authors' code). It can fall when the standing champion is paired with new
             collaborators, and is constant after that individual has left the population.
         mean: Mean fitness of this turn.
+        measures: Measures that its evolver wants: name -> one value for each member.
     """
 
     population: str
@@ -256,6 +350,7 @@ class PopulationReport:
     best_so_far: float
     standing_champion: float
     mean: float
+    measures: Mapping[str, tuple[float, ...]] = attrs.field(factory=dict, repr=lambda given: str(list(given)))
 
 
 @attrs.frozen

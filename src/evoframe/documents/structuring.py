@@ -83,7 +83,10 @@ def option_names(class_: type[Any]) -> Iterator[str]:
 
 
 def unstructure(instance: Any) -> Any:
-    """Return *instance* as TOML values, without options that are ``None``, which TOML cannot express."""
+    """Return *instance* as TOML values, without options that are ``None``, which TOML cannot express.
+
+    Instances that have a method ``as_table`` are written as the table that it returns.
+    """
     return _without_none(_converter().unstructure(instance))
 
 
@@ -108,7 +111,25 @@ def _converter() -> Converter:
     )
     converter.register_structure_hook_func(functools.partial(_is_a, dict), _table)
     converter.register_structure_hook_factory(attrs.has, functools.partial(_class_hook, converter))
+    converter.register_structure_hook_func(_is_generic, _instance)
+    converter.register_unstructure_hook_func(_has_table, lambda instance: instance.as_table())
     return converter
+
+
+def _is_generic(type_: Any) -> bool:
+    return attrs.has(get_origin(type_) or object)
+
+
+def _has_table(class_: Any) -> bool:
+    return hasattr(class_, "as_table")
+
+
+def _instance(value: Any, type_: Any) -> Any:
+    """Return an instance of a generic class, which only its maker can create from a table."""
+    class_ = get_origin(type_)
+    if not isinstance(value, class_):
+        raise TypeError(f"expected a table with the key 'name', found {found(value)}")
+    return value
 
 
 def _is_a(origin: Any, type_: Any) -> bool:

@@ -14,7 +14,7 @@ from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import suggestion
 from evoframe.registry import hookspecs
 
-__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "normalized"]
+__all__ = ["KINDS", "Kind", "Offer", "Plugins", "Skipped", "kind_of", "normalized"]
 
 _COMPONENT_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 
@@ -26,14 +26,26 @@ class Kind:
     Attributes:
         hook: Hook that offers components of this kind.
         protocol: Protocol of these components.
+        others: Further protocols, of which a component can implement one instead.
     """
 
     hook: str
     protocol: type[Any]
+    others: tuple[type[Any], ...] = ()
+
+    def missing(self, component: object) -> list[str]:
+        """Return the members that *component* lacks of the protocol that it implements most of."""
+        lacking = [_missing(protocol, component) for protocol in (self.protocol, *self.others)]
+        return min(lacking, key=len)
+
+
+def _missing(protocol: type[Any], component: object) -> list[str]:
+    members = sorted(name for name in dir(protocol) if not name.startswith("_"))
+    return [name for name in members if not hasattr(component, name)]
 
 
 KINDS: Mapping[str, Kind] = {
-    "aggregator": Kind("evoframe_aggregators", protocols.Aggregator),
+    "aggregator": Kind("evoframe_aggregators", protocols.Aggregator, (protocols.Credit,)),
     "encoder": Kind("evoframe_encoders", protocols.Encoder),
     "evolver": Kind("evoframe_evolvers", protocols.Evolver),
     "executor": Kind("evoframe_executors", protocols.Executor),
@@ -186,6 +198,11 @@ class Plugins:
             causes = "; ".join(f"{skipped.source}: {skipped.cause}" for skipped in self.skipped)
             message += f" (skipped plugins: {causes})"
         return message
+
+
+def kind_of(protocol: object) -> str | None:
+    """Return the kind of components with a *protocol*, or ``None``."""
+    return next((name for name, kind in KINDS.items() if protocol in (kind.protocol, *kind.others)), None)
 
 
 def normalized(distribution: str) -> str:
