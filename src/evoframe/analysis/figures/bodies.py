@@ -69,8 +69,13 @@ def body(geometry: Geometry, title: str = "", frame: int = 0) -> Figure:
         handlelength=1.0,
     )
     _write(figure, 0.04, title, size=9)
-    _write(figure, 0.22, "\u2009\u00d7\u2009".join(f"{1000 * x:.3g}" for x in extent) + " mm", size=7)
+    _write(figure, 0.22, "\u2009\u00d7\u2009".join(map(_millimeters, extent)) + " mm", size=7)
     return figure
+
+
+def _millimeters(length: float) -> str:
+    """Return a length in meters as millimeters with three significant digits, such as ``1000``."""
+    return f"{float(f'{1000 * length:.3g}'):g}"
 
 
 def _write(figure: Figure, below: float, text: str, size: int) -> None:
