@@ -18,7 +18,8 @@
 static const double FASTER = 2.0;
 static const double GAIN = 1.15; /* of the largest speed in a step; in ten steps about FASTER */
 static const double STRONGEST = 1.25; /* bond damping times the fraction of the largest time step */
-static const double STEPS_PER_EDGE = SPACE * 1.7320508075688772; /* between cells, along any line */
+static const double STEPS_PER_EDGE =
+    SPACE * 1.7320508075688772;                    /* cells per edge: at most root 3 */
 static const double DIAGONAL = 1.4142135623730951; /* edges, distance of unconnected neighbors */
 static const int64_t MOST_MEASURED = 1024; /* voxels; the pairs of more would take too long */
 static const double ROUNDING = 1e-9;       /* relative, of distances */
@@ -203,9 +204,16 @@ static bool may_touch(const struct body *body, struct pair pair, double limit)
     return !(vec_dot(apart, apart) > reach * reach * (1.0 + ROUNDING));
 }
 
-/* Return whether no voxel up to a depth can touch one that was not near at rest, because of the
- * steps since the latter was computed: they are limited by their distance, since depths spread
- * through space, by the deepest voxel, and by the time from the start. */
+/* Return whether no voxel up to a depth can touch one that was not near at rest.
+ *
+ * Let d be their distance at rest, at least the radius of the near pairs. They touch only if d is
+ * at most `touching` (the largest distance of touching voxels, plus twice the farthest that a
+ * computed voxel has moved) plus the way of the other voxel since it was computed n steps ago.
+ * Depths grow by at most 2 per cell of the lattice, along any line STEPS_PER_EDGE per edge of
+ * distance, so that n <= STEPS_PER_EDGE * d / edge - 1; n is also limited by the deepest voxel and
+ * by the time from the start. The way grows with n faster than linearly, and the bound on d
+ * linearly. Both ends of the range of n are therefore sufficient: the n that belongs to the radius
+ * (`closest`), and the largest n (`longest`), which belongs to a distance of at least `farther`. */
 static bool far_are_apart(const struct body *body, double limit, double touching)
 {
     const double edge = body->model->settings.voxel_size, radius = near_radius(body->model);
@@ -213,7 +221,6 @@ static bool far_are_apart(const struct body *body, double limit, double touching
     const double longest = fmax(0.0, most);
     const double closest = fmin(longest, STEPS_PER_EDGE * radius / edge - 1.0);
     const double farther = fmax(radius, (longest + 1.0) / STEPS_PER_EDGE * edge);
-    /* between these distances, the way grows faster than the time */
     return touching + way_in(body, closest) < radius && touching + way_in(body, longest) < farther;
 }
 
