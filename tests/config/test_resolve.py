@@ -103,7 +103,7 @@ FAULTS: list[tuple[str, str, list[str]]] = [
     ("simulator.limit=[1]", "simulator.limit", ["a number", "found [1]"]),
     ("aggregator=5", "aggregator", ["toy-mean", "'name'", "found 5"]),
     ("run.seed=-1", "run.seed", [">= 0", "found -1"]),
-    ("run.sede=1", "run.sede", ["unknown option", "'seed'", "options: seed, generations"]),
+    ("run.sede=1", "run.sede", ["unknown option", "'seed'", "options: seed, generations, timing"]),
     ("run=4", "run", ["a table", "found 4"]),
     ("agregator=5", "agregator", ["unknown key", "'aggregator'"]),
     ("populations.a.size=1", "populations.a.size", [">= 2", "found 1"]),
@@ -165,13 +165,13 @@ class TestFaults:
         assert (fault.source, fault.key) == (str(toy_file), "collaboration")
         assert all(part in fault.problem for part in ("30", "6 members", "population 'a'"))
 
-    def test_one_population_is_not_enough(self, toy_config: Load, toy_file: Path) -> None:
+    def test_a_run_needs_a_population(self, toy_config: Load, toy_file: Path) -> None:
         text = toy_file.read_text()
-        start, end = text.index("[populations.b]"), text.index("[collaboration]")
+        start, end = text.index("[populations.a]"), text.index("[collaboration]")
         toy_file.write_text(text[:start] + text[end:])
-        [fault] = faults_of(toy_config)
+        fault = faults_of(toy_config)[0]
         assert (fault.source, fault.key) == (str(toy_file), "populations")
-        assert "found 1" in fault.problem
+        assert "found none" in fault.problem
 
 
 class TestRealComponents:

@@ -14,7 +14,9 @@ from evoframe.contract import protocols
 
 COMPONENTS: dict[str, Any] = {
     "Aggregator": toys.Mean(),
+    "CollaborationRun": evoframe.started(toys.First(), "a", "b"),
     "CollaborationStrategy": toys.First(),
+    "Credit": toys.Share(),
     "Encoder": toys.Number(),
     "Evolver": toys.Drift(),
     "EvolverRun": toys.Drift().start(1, 1, 4, np.random.default_rng(0)),

@@ -15,8 +15,8 @@ from evoframe.registry import Plugins
 
 __all__ = ["plugins"]
 
-_SETTINGS = {kind: key for key, kind in COMPONENTS.items()} | {
-    kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
+_SETTINGS = {kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()} | {
+    kind: key for key, kind in COMPONENTS.items()
 }
 """Kind of component -> the key that chooses it in a configuration."""
 

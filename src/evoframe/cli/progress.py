@@ -12,6 +12,7 @@ from rich.text import Text
 
 from evoframe.cli.context import messages
 from evoframe.contract import RunConfig, Turn, unit_of
+from evoframe.evolution import timing_of
 from evoframe.messages import quantity
 from evoframe.registry import hookimpl
 
@@ -36,7 +37,7 @@ class Progress:
     @hookimpl
     def evoframe_run_started(self, config: RunConfig, directory: Path) -> None:
         """Print the name, seed and directory of the run."""
-        self._turns = config.run.generations * len(config.populations)
+        self._turns = timing_of(config).length
         self._unit = unit_of(config.objective.component)
         self._started = self._shown = time.monotonic()
         self._console.print(

@@ -50,7 +50,7 @@ def _sections(config: RunConfig, *, active: bool) -> Iterator[str]:
     yield from _section("run", tables["run"], RunSettings, active=active)
     for role, table in tables["populations"].items():
         yield from _section(f"populations.{role}", table, PopulationConfig, active=active)
-        for part in POPULATION_COMPONENTS:
+        for part in (part for part in POPULATION_COMPONENTS if part in table):
             key = f"populations.{role}.{part}"
             yield from _section(key, table[part], type(components[key].component), active=active)
     for key in COMPONENTS:

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import UnionType
-from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 import attrs
 from attrs import validators
@@ -16,14 +16,22 @@ from evoframe.config.labels import label_of
 from evoframe.config.layers import Layer, Layers, layer_of, read_layers
 from evoframe.contract import (
     COMPONENTS,
+    CORE_MEASURES,
     POPULATION_COMPONENTS,
+    SHARED,
+    ArrayType,
     Chosen,
     PluginSettings,
     PopulationConfig,
     RunConfig,
     RunSettings,
     Simulator,
+    array_types_of,
     is_role,
+    measures_of_designs,
+    measures_of_simulations,
+    sizes_of,
+    wanted_by,
 )
 from evoframe.documents import Fault, StructureError, Tree, structure
 from evoframe.errors import ConfigurationError, PluginError
@@ -146,8 +154,12 @@ def _joined(faults: list[Fault], layers: Layers) -> ConfigurationError:
 
 
 @attrs.frozen
-class _Size:
+class _Plain:
+    """The options of a population that choose no component."""
+
     size: int = attrs.field(default=25, validator=validators.ge(2))
+    goal: Literal["maximize", "minimize"] = "maximize"
+    turns: int = attrs.field(default=1, validator=validators.ge(1))
 
 
 class _Reading:
@@ -176,7 +188,7 @@ class _Reading:
         choose = functools.partial(self.chosen, plugins)
         populations = self._populations(choose)
         chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
-        self.faults += _Checks(populations, chosen).faults(scored=scored)
+        self.faults += _Checks(run, populations, chosen).faults(scored=scored)
         if self.faults:
             self.faults = with_hints(self.faults, known_keys(self.tree, plugins))
             return None
@@ -246,10 +258,10 @@ class _Reading:
 
     def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
         tables = self.tree.get("populations")
-        if not isinstance(tables, Mapping) or len(tables) < 2:
-            count = len(tables) if isinstance(tables, Mapping) else 0
-            message = f"expected at least two tables [populations.ROLE], found {count}"
-            self.faults.append(Fault(("populations",), message))
+        if not isinstance(tables, Mapping) or not tables:
+            self.faults.append(
+                Fault(("populations",), "expected at least one table [populations.NAME], found none")
+            )
             return {}
         return {role: self._population(role, table, choose) for role, table in tables.items()}
 
@@ -266,13 +278,16 @@ class _Reading:
             self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
             return None
         rest = {key: value for key, value in table.items() if key not in POPULATION_COMPONENTS}
-        size = self._structured(rest, _Size, path)
+        plain = self._structured(rest, _Plain, path)
         chosen = {
-            key: choose(kind, table.get(key), (*path, key)) for key, kind in POPULATION_COMPONENTS.items()
+            key: choose(kind, table.get(key), (*path, key))
+            for key, kind in POPULATION_COMPONENTS.items()
+            if key in table or key not in SHARED
         }
-        if size is None or None in chosen.values():
+        if plain is None or None in chosen.values():
             return None
-        return PopulationConfig(size.size, **cast("dict[str, Any]", chosen))
+        settings: dict[str, Any] = attrs.asdict(plain, recurse=False)
+        return PopulationConfig(**settings, **cast("dict[str, Any]", chosen))
 
 
 class _Checks:
@@ -280,52 +295,130 @@ class _Checks:
 
     def __init__(
         self,
+        run: RunSettings | None,
         populations: Mapping[str, PopulationConfig | None],
         chosen: Mapping[str, Chosen[Any] | None],
     ) -> None:
+        self.run = run
         self.populations = {role: given for role, given in populations.items() if given is not None}
         self.complete = bool(populations) and len(self.populations) == len(populations)
         self.chosen = {key: given.component for key, given in chosen.items() if given is not None}
 
     def faults(self, *, scored: bool) -> list[Fault]:
         record = self._record() if scored else ()
-        return [*self._sizes(), *self._collaboration(), *self._roles(), *record]
+        return [
+            *self._sizes(),
+            *self._timing(),
+            *self._collaborations(),
+            *self._roles(),
+            *self._measures(),
+            *record,
+        ]
 
     def _sizes(self) -> Iterator[Fault]:
         for role, population in self.populations.items():
             check = functools.partial(population.evolver.component.check, population.size)
             yield from _refusal(("populations", role), check)
 
-    def _collaboration(self) -> Iterator[Fault]:
-        strategy = self.chosen.get("collaboration")
+    def _timing(self) -> Iterator[Fault]:
+        if self.run is None or self.run.timing != "parallel":
+            return
+        for role, population in self.populations.items():
+            if population.turns != 1:
+                message = f"expected 1 with run.timing = 'parallel', found {population.turns}"
+                yield Fault(("populations", role, "turns"), message, ("run", "timing"))
+
+    def _collaborations(self) -> Iterator[Fault]:
+        """Check strategies and aggregators; equal ones of several populations are checked together."""
+        by_key: dict[tuple[str, ...], list[str]] = {}
+        for role, population in self.populations.items():
+            own = population.collaboration is not None
+            by_key.setdefault(
+                ("populations", role, "collaboration") if own else ("collaboration",), []
+            ).append(role)
+        for path, roles in by_key.items():
+            yield from self._collaboration(path, roles)
+
+    def _collaboration(self, path: tuple[str, ...], roles: Sequence[str]) -> Iterator[Fault]:
+        """Check one strategy that chooses for the individuals of some populations."""
+        own = self.populations[roles[0]].collaboration
+        strategy = own.component if own else self.chosen.get("collaboration")
         if strategy is None:
             return
-        counts: set[int] = set()
-        for role, population in self.populations.items():
+        if len(self.populations) == 1:  # its individuals meet nobody, and have one score
+            yield from self._aggregators(path, roles, [1])
+            return
+        counts: dict[str, set[int]] = {}
+        for other, population in self.populations.items():
+            if roles == [other]:
+                continue
             try:
-                counts.add(strategy.size(population.size))
+                counts[other] = set(sizes_of(strategy, population.size))
             except ConfigurationError as error:
-                yield Fault(("collaboration",), f"{error} (population '{role}')")
+                yield Fault(path, f"{error} (population '{other}')")
                 return
-        if len(self.populations) > 2 and len(counts) > 1:
-            listed = ", ".join(map(str, sorted(counts)))
+        if len(self.populations) > 2 and len(set(map(frozenset, counts.values()))) > 1:
+            listed = ", ".join(map(str, sorted(set().union(*counts.values()))))
             message = f"populations of different sizes give different numbers of collaborators: {listed}"
-            yield Fault(("collaboration",), message)
-        if "aggregator" in self.chosen:
-            for count in sorted(counts):
-                check = functools.partial(self.chosen["aggregator"].check, count)
-                yield from _refusal(("aggregator",), check, involves=("collaboration",))
+            yield Fault(path, message)
+        yield from self._aggregators(path, roles, sorted(set().union(*counts.values())))
+
+    def _aggregators(
+        self, path: tuple[str, ...], roles: Sequence[str], counts: Sequence[int]
+    ) -> Iterator[Fault]:
+        """Check that the aggregators of some populations accept numbers of collaborators."""
+        places: dict[tuple[str, ...], Any] = {}
+        for role in roles:
+            own = self.populations[role].aggregator
+            if own is not None:
+                places["populations", role, "aggregator"] = own.component
+            elif "aggregator" in self.chosen:
+                places["aggregator",] = self.chosen["aggregator"]
+        for place, aggregator in places.items():
+            for count in counts:
+                yield from _refusal(place, functools.partial(aggregator.check, count), involves=path)
+
+    def _measures(self) -> Iterator[Fault]:
+        """Check that every measure that an evolver wants has exactly one supplier."""
+        if not self.complete or not {"simulator", "objective"} <= self.chosen.keys():
+            return
+        suppliers: list[tuple[str, tuple[str, ...]]] = [("evoframe", CORE_MEASURES)]
+        suppliers += [
+            (f"populations.{role}.encoder", measures_of_designs(population.encoder.component))
+            for role, population in self.populations.items()
+        ]
+        simulator, objective = self.chosen["simulator"], self.chosen["objective"]
+        suppliers.append(("simulator or objective", measures_of_simulations(simulator, objective)))
+        supplied = sorted({name for _, names in suppliers for name in names})
+        for role, population in self.populations.items():
+            path = ("populations", role, "evolver")
+            for wanted in wanted_by(population.evolver.component):
+                count = sum(names.count(wanted) for _, names in suppliers)
+                if count == 0:
+                    known = ", ".join(supplied)
+                    yield Fault(
+                        path, f"wants the measure '{wanted}', which nothing supplies; supplied: {known}"
+                    )
+                elif count > 1:
+                    listed = ", ".join(key for key, names in suppliers if wanted in names)
+                    yield Fault(path, f"wants the measure '{wanted}', which several supply: {listed}")
 
     def _roles(self) -> Iterator[Fault]:
         if not self.complete:
             return
         provided: list[str] = []
+        types: dict[str, ArrayType] = {}
         for role, population in self.populations.items():
             encoder = population.encoder.component
             path = ("populations", role, "encoder")
+            declared = array_types_of(encoder)
             for needed in encoder.requires:
                 if needed not in provided:
                     yield Fault(path, f"requires the role '{needed}', which no earlier population provides")
+                elif types.get(needed, declared.get(needed)) != declared.get(needed, types.get(needed)):
+                    message = f"requires {declared[needed]} for the role '{needed}', found {types[needed]}"
+                    yield Fault(path, message)
+            types |= {role: type_ for role, type_ in declared.items() if role in encoder.provides}
             for given in encoder.provides:
                 if given in provided:
                     yield Fault(path, f"provides the role '{given}', which an earlier population provides")

@@ -5,6 +5,7 @@ from evoframe.evolution.coevolution import Coevolution, first_meetings
 from evoframe.evolution.evaluation import Evaluator, score_designs
 from evoframe.evolution.population import Population
 from evoframe.evolution.randomness import stream
+from evoframe.evolution.timing import timing_of
 
 __all__ = [
     "Coevolution",
@@ -15,4 +16,5 @@ __all__ = [
     "first_meetings",
     "score_designs",
     "stream",
+    "timing_of",
 ]

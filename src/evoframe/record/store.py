@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.contract import Design, Turn
+from evoframe.contract import Design, PopulationReport, Turn
 from evoframe.errors import ComponentError, InputError, RunError
 from evoframe.files import Lock, json_text, remove, write_atomically, write_json
 from evoframe.record.champion import champion_document
@@ -152,6 +152,7 @@ class Store:
                     for i, m in enumerate(r.members)
                 ),
             )
+            self._insert("measures", (row for r in reports for row in _measures(index, r)))
             pairs = enumerate(turn.pairs)
             self._insert("pairs", ((index, i, *p.genomes, p.score, p.diverged_at) for i, p in pairs))
             self._insert("workload", [(index, work.pairs, work.simulations, work.seconds)])
@@ -258,6 +259,14 @@ class Store:
             self._synced = time.monotonic()
 
 
+def _measures(turn: int, report: PopulationReport) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each measure of each member, in the order of their keys."""
+    names = sorted(report.measures)
+    for position in range(len(report.members)):
+        for name in names:
+            yield turn, report.population, position, name, report.measures[name][position]
+
+
 def _as_stored(row: tuple[Any, ...]) -> list[Any]:
     """Return the values of a row as SQLite stores them: it drops the sign of zero."""
     return [value + 0.0 if isinstance(value, float) else value for value in row]
@@ -272,6 +281,8 @@ def _state(part: str, values: Any) -> str:
         problem = f"its state cannot be saved as JSON: {error}"
         if kind == "population":
             raise ComponentError(f"populations.{population}.evolver", problem) from error
+        if kind == "collaboration":
+            raise ComponentError("collaboration", problem, f"population {population}") from error
         raise RunError(problem, key=part) from error
 
 

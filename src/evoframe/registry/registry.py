@@ -57,8 +57,8 @@ KINDS: Mapping[str, Kind] = {
 
 _NOUNS = {"strategy": "collaboration strategy"}  # kind -> its name in messages, if different
 
-_KEYS = {kind: key for key, kind in COMPONENTS.items()} | {
-    kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
+_KEYS = {kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()} | {
+    kind: key for key, kind in COMPONENTS.items()
 }  # kind -> configuration key
 
 

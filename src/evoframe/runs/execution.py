@@ -19,7 +19,7 @@ from evoframe.messages import cause_of, quantity
 from evoframe.record import Run, Store, Verification, keep_verification
 from evoframe.registry import Observers, Plugins
 
-__all__ = ["Execution", "verify_champion"]
+__all__ = ["Execution", "completed", "verify_champion"]
 
 _log = logging.getLogger(__name__)
 
@@ -81,7 +81,7 @@ class Execution:
         self._coevolution.on_simulating = saving.complete
         try:
             for turn in self._coevolution:
-                saving.begin(turn)
+                saving.begin(turn, self._coevolution.reproducing_next)
                 if stop():
                     break
         finally:
@@ -99,21 +99,12 @@ class Execution:
         try:
             yield
         except ComponentError as error:
-            complete = self._completed(error)
+            complete = completed(error, self.config, f"turn {self._store.last_turn + 1}")
             complete.add_note(hint)
             raise complete from error
         except RunError as error:
             error.add_note(hint)
             raise
-
-    def _completed(self, error: ComponentError) -> ComponentError:
-        """Return the error with the component's name and plugin, and the turn."""
-        chosen = dict(self.config.components()).get(error.component)
-        if chosen is None:
-            return attrs.evolve(error)
-        turn = f"turn {self._store.last_turn + 1}"
-        concerns = ", ".join(part for part in (turn, error.concerns) if part)
-        return attrs.evolve(error, offered=f"'{chosen.name}' (plugin {chosen.source})", concerns=concerns)
 
 
 @attrs.define
@@ -129,11 +120,11 @@ class _Saving:
     _unit: str
     _unsaved: Turn | None = None
 
-    def begin(self, turn: Turn) -> None:
-        """Take over a turn."""
+    def begin(self, turn: Turn, reproducing_next: Collection[str]) -> None:
+        """Take over a turn; populations that reproduce in the next one change their part of the state."""
         self.complete()  # the turn before, if no worker has simulated anything since
         self._unsaved = turn
-        if len(turn.reports) > 1:  # the next population to reproduce will change its part of the state
+        if any(report.population in reproducing_next for report in turn.reports):
             self.complete()
 
     def complete(self) -> None:
@@ -145,6 +136,15 @@ class _Saving:
         self._store.save(turn, self._state([report.population for report in turn.reports]))
         _log_turn(turn, self._unit)
         self._observers.tell("evoframe_turn_finished", turn=turn)
+
+
+def completed(error: ComponentError, config: RunConfig, turn: str) -> ComponentError:
+    """Return an error of a component with its name and plugin, and the turn."""
+    chosen = dict(config.components()).get(error.component)
+    if chosen is None:
+        return attrs.evolve(error)
+    concerns = ", ".join(part for part in (turn, error.concerns) if part)
+    return attrs.evolve(error, offered=f"'{chosen.name}' (plugin {chosen.source})", concerns=concerns)
 
 
 def verify_champion(config: RunConfig, run: Run) -> Verification | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from evoframe.config import Layer, layers_in, layers_of, resolve_layers
 from evoframe.contract import RunConfig, SupportsVariants
 from evoframe.documents import differences
-from evoframe.errors import ConfigurationError, InputError
+from evoframe.errors import ComponentError, ConfigurationError, InputError
 from evoframe.evolution import Coevolution, assemble
 from evoframe.files import Lock, acquire_lock, is_leftover, parsed_json, released_on_error, remove
 from evoframe.record import (
@@ -21,7 +21,7 @@ from evoframe.record import (
     open_run,
 )
 from evoframe.registry import Plugins, discover
-from evoframe.runs.execution import Execution, verify_champion
+from evoframe.runs.execution import Execution, completed, verify_champion
 from evoframe.runs.starting import open_store
 
 __all__ = [
@@ -139,7 +139,7 @@ def _reopen(
     coevolution = assemble(config)
     try:
         if run.begun:
-            restore(coevolution, run)
+            restore(coevolution, run, config)
         run.close()  # a reader would block writing
         store = open_store(run.directory, config, lock)
         if run.begun:
@@ -200,7 +200,7 @@ def _listed(problem: str, lines: Sequence[str]) -> str:
     return "\n  ".join([f"{problem}:", *lines])
 
 
-def restore(coevolution: Coevolution, saved: Run) -> None:
+def restore(coevolution: Coevolution, saved: Run, config: RunConfig) -> None:
     """Restore the loop to the end of the last turn.
 
     Raises:
@@ -213,6 +213,8 @@ def restore(coevolution: Coevolution, saved: Run) -> None:
         coevolution.restore(state)
     except Exception as error:
         cause = f"missing {error}" if isinstance(error, KeyError) else str(error)
+        if isinstance(error, ComponentError):
+            cause = str(completed(error, config, f"state after turn {last}"))
         raise InputError(f"cannot be restored: {cause}", source=saved.directory, key="state") from error
     if coevolution.turn != last:
         problem = f"expected the state after turn {last}, found that after turn {coevolution.turn}"

@@ -1,0 +1,175 @@
+"""The choice of collaborators for the individuals of one population."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+
+from evoframe.contract import (
+    Archived,
+    Choice,
+    CollaborationRun,
+    CollaborationStrategy,
+    Judged,
+    Member,
+    ScoredMeetings,
+    SupportsEach,
+    SupportsMemory,
+    blaming,
+    sizes_of,
+    started,
+)
+from evoframe.documents import structure
+from evoframe.errors import ComponentError
+from evoframe.evolution.population import Population
+
+__all__ = ["Collaboration"]
+
+
+@attrs.define
+class Collaboration:
+    """The choice of collaborators for the individuals of one population, from all others.
+
+    Attributes:
+        key: Dotted key of the strategy in the configuration.
+        strategy: Chooses the collaborators.
+        own: The population.
+        others: The other populations, in the order of decoding.
+    """
+
+    key: str
+    strategy: CollaborationStrategy
+    own: Population
+    others: tuple[Population, ...]
+    _runs: dict[str, CollaborationRun] = attrs.field(factory=dict, init=False)
+    _met: dict[str, dict[int, tuple[int, ...]]] = attrs.field(factory=dict, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        with blaming(self.key):
+            self._runs = {
+                other.name: started(self.strategy, self.own.name, other.name) for other in self.others
+            }
+
+    @property
+    def observes(self) -> bool:
+        """Whether the strategy has a memory, or may ask whom individuals met."""
+        return isinstance(self.strategy, SupportsMemory | SupportsEach)
+
+    def teams(self) -> list[Sequence[tuple[int, ...]]]:
+        """Return the teams of each individual: one position in each other population.
+
+        Collaborators from several populations are combined by position: the i-th of each. Archived ones are
+        admitted to their populations for this turn.
+
+        Raises:
+            ComponentError: The strategy failed, or chose invalid collaborators.
+        """
+        columns = [self._positions(other) for other in self.others]
+        if not columns:
+            return [[()]] * len(self.own.members)
+        rows = list(zip(*columns, strict=True))
+        teams = {row: self._combined(row) for row in set(rows)}  # most are equal
+        return [teams[row] for row in rows]
+
+    def observe(self, seen: ScoredMeetings) -> None:
+        """Remember whom the individuals met, and show the turn to the strategy."""
+        self._note_collaborators(seen)
+        for other in self.others:
+            with blaming(self.key):
+                self._runs[other.name].observe(seen, other.dump)
+
+    def state(self) -> dict[str, Any] | None:
+        """Return everything needed to continue, as JSON values; ``None`` for a strategy without a memory."""
+        if not self.observes:
+            return None
+        with blaming(self.key):
+            runs = {name: run.state() for name, run in self._runs.items()}
+        met = {
+            name: [[key, list(collaborators)] for key, collaborators in met.items()]
+            for name, met in self._met.items()
+        }
+        return {"runs": runs, "met": met}
+
+    def restore(self, state: Any) -> None:
+        """Continue from the result of :meth:`state`.
+
+        Raises:
+            StructureError: The state is invalid; names the key.
+            ValueError: The strategy rejects its state.
+        """
+        saved = structure(state, _Saved, ("collaboration", self.own.name))
+        for name, run in self._runs.items():
+            with blaming(self.key):
+                run.restore(saved.runs.get(name))
+        self._met = {
+            name: {int(key): tuple(map(int, ids)) for key, ids in met} for name, met in saved.met.items()
+        }
+
+    def _positions(self, other: Population) -> list[tuple[int, ...]]:
+        """Return the positions of the collaborators of each individual from another population."""
+        members, judged = other.candidates, self._judged(other)
+        with blaming(self.key):
+            sizes = sizes_of(self.strategy, len(members))
+        with blaming(self.key):
+            rows = list(self._runs[other.name].choose(judged, members, self.own.rng))
+        if len(rows) != len(judged):
+            raise ComponentError(self.key, f"chose for {len(rows)} individuals, expected {len(judged)}")
+        positions = []
+        for row in rows:
+            _refuse_invalid(self.key, row, sizes, other)
+            positions.append(tuple(other.admit(choice) for choice in row))
+        return positions
+
+    def _judged(self, other: Population) -> list[Judged]:
+        met = self._met.get(other.name, {})
+        return [Judged(member, met.get(member.id, ())) for member in self.own.members]
+
+    def _combined(self, columns: Sequence[Sequence[int]]) -> list[tuple[int, ...]]:
+        counts = {len(column) for column in columns}
+        if len(counts) > 1:
+            listed = ", ".join(map(str, sorted(counts)))
+            raise ComponentError(self.key, f"chose different numbers from other populations: {listed}")
+        return list(zip(*columns, strict=True))
+
+    def _note_collaborators(self, seen: ScoredMeetings) -> None:
+        own = seen.populations.index(self.own.name)
+        for other in self.others:
+            column = seen.populations.index(other.name)
+            ids = [member.id for member in seen.members[column]]
+            self._met[other.name] = {
+                member.id: tuple(dict.fromkeys(ids[i] for i in seen.meetings[rows, column]))
+                for member, rows in zip(self.own.members, seen.of(own), strict=True)
+                if len(rows)
+            }
+
+
+def _refuse_invalid(key: str, row: Sequence[Choice], sizes: Sequence[int], other: Population) -> None:
+    """Refuse collaborators that do not exist or are repeated, and another number than declared."""
+    ids = _ids(row, other.candidates) if isinstance(row, Sequence) else [None]
+    if None in ids or len(set(ids)) != len(ids) or len(ids) not in sizes:
+        expected = " or ".join(map(str, sizes))
+        raise ComponentError(
+            key, f"chose {row}, expected {expected} of the {len(other.candidates)} members of '{other.name}'"
+        )
+
+
+def _ids(row: Sequence[Choice], members: Sequence[Member]) -> list[int | None]:
+    """Return the id of each collaborator; ``None`` if there is no such individual."""
+    return [
+        choice.member.id
+        if isinstance(choice, Archived)
+        else members[choice].id
+        if type(choice) is int and 0 <= choice < len(members)
+        else None
+        for choice in row
+    ]
+
+
+@attrs.frozen
+class _Saved:
+    """The document that :meth:`Collaboration.state` returns."""
+
+    runs: dict[str, Any]
+    met: dict[str, Any]
