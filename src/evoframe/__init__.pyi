@@ -10,6 +10,7 @@ from .contract.config import (
     ADDED_LATER as ADDED_LATER,
     Chosen as Chosen,
     PopulationConfig as PopulationConfig,
+    RoleConfig as RoleConfig,
     RunConfig as RunConfig,
     RunSettings as RunSettings,
     Source as Source,
@@ -65,6 +66,8 @@ from .contract.protocols import (
     ExecutorRun as ExecutorRun,
     Network as Network,
     Objective as Objective,
+    RoleProvider as RoleProvider,
+    RoleRun as RoleRun,
     Simulator as Simulator,
 )
 from .contract.values import (

@@ -12,6 +12,7 @@ from evoframe.config.layers import read_layers
 from evoframe.contract import (
     COMPONENTS,
     POPULATION_COMPONENTS,
+    ROLE_COMPONENTS,
     PluginSettings,
     PopulationConfig,
     RunSettings,
@@ -23,7 +24,7 @@ from evoframe.registry import Plugins
 
 __all__ = ["SECTIONS", "known_keys", "settings_like", "similar_keys", "unknown_key", "with_hints"]
 
-SECTIONS = ("run", "populations", *COMPONENTS, "plugins")
+SECTIONS = ("run", "populations", "roles", *COMPONENTS, "plugins")
 """The top-level keys of a configuration."""
 
 _MOST_HINTS = 4
@@ -42,6 +43,13 @@ def known_keys(tree: Tree, plugins: Plugins) -> list[str]:
             keys += [f"populations.{role}", *(f"populations.{role}.{name}" for name in plain)]
             for key, kind in POPULATION_COMPONENTS.items():
                 path = f"populations.{role}.{key}"
+                keys += [path, *_component_keys(path, kind, table.get(key), plugins)]
+    roles = tree.get("roles")
+    for name, table in roles.items() if isinstance(roles, Mapping) else ():
+        if isinstance(table, Mapping):
+            keys += [f"roles.{name}", f"roles.{name}.draw"]
+            for key, kind in ROLE_COMPONENTS.items():
+                path = f"roles.{name}.{key}"
                 keys += [path, *_component_keys(path, kind, table.get(key), plugins)]
     return keys
 

@@ -11,27 +11,23 @@ from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, get
 import attrs
 from attrs import validators
 
+from evoframe.config.checks import Checks
 from evoframe.config.hints import SECTIONS, known_keys, unknown_key, with_hints
 from evoframe.config.labels import label_of
 from evoframe.config.layers import Layer, Layers, layer_of, read_layers
 from evoframe.contract import (
     COMPONENTS,
-    CORE_MEASURES,
     POPULATION_COMPONENTS,
+    ROLE_COMPONENTS,
     SHARED,
-    ArrayType,
     Chosen,
     PluginSettings,
     PopulationConfig,
+    RoleConfig,
     RunConfig,
     RunSettings,
     Simulator,
-    array_types_of,
     is_role,
-    measures_of_designs,
-    measures_of_simulations,
-    sizes_of,
-    wanted_by,
 )
 from evoframe.documents import Fault, StructureError, Tree, structure
 from evoframe.errors import ConfigurationError, PluginError
@@ -162,6 +158,13 @@ class _Plain:
     turns: int = attrs.field(default=1, validator=validators.ge(1))
 
 
+@attrs.frozen
+class _PlainRole:
+    """The options of a role that choose no component."""
+
+    draw: Literal["run", "turn", "individual"] = "run"
+
+
 class _Reading:
     """A pass over a tree that collects faults instead of stopping at the first."""
 
@@ -187,14 +190,16 @@ class _Reading:
         run = self.section("run", RunSettings)
         choose = functools.partial(self.chosen, plugins)
         populations = self._populations(choose)
+        roles = self._roles(choose)
         chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
-        self.faults += _Checks(run, populations, chosen).faults(scored=scored)
+        self.faults += Checks(run, populations, roles, chosen).faults(scored=scored)
         if self.faults:
             self.faults = with_hints(self.faults, known_keys(self.tree, plugins))
             return None
         return RunConfig(
             run=cast("RunSettings", run),
             populations=cast("Mapping[str, PopulationConfig]", populations),
+            roles=cast("Mapping[str, RoleConfig]", roles),
             plugins=settings,
             label=label,
             **cast("dict[str, Any]", chosen),
@@ -265,6 +270,23 @@ class _Reading:
             return {}
         return {role: self._population(role, table, choose) for role, table in tables.items()}
 
+    def _roles(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, RoleConfig | None]:
+        tables = self.tree.get("roles", {})
+        if not isinstance(tables, Mapping):
+            self.faults.append(Fault(("roles",), f"expected tables [roles.NAME], found {found(tables)}"))
+            return {}
+        return {name: self._role(name, table, choose) for name, table in tables.items()}
+
+    def _role(self, name: str, table: Any, choose: Callable[..., Chosen[Any] | None]) -> RoleConfig | None:
+        path = ("roles", name)
+        if not isinstance(table, Mapping):
+            self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
+            return None
+        rest = {key: value for key, value in table.items() if key not in ROLE_COMPONENTS}
+        plain = self._structured(rest, _PlainRole, path)
+        provider = choose("role", table.get("provider"), (*path, "provider"))
+        return RoleConfig(provider, plain.draw) if plain and provider else None
+
     def _population(
         self, role: str, table: Any, choose: Callable[..., Chosen[Any] | None]
     ) -> PopulationConfig | None:
@@ -290,150 +312,6 @@ class _Reading:
         return PopulationConfig(**settings, **cast("dict[str, Any]", chosen))
 
 
-class _Checks:
-    """Checks between components; checks that earlier faults make impossible are skipped."""
-
-    def __init__(
-        self,
-        run: RunSettings | None,
-        populations: Mapping[str, PopulationConfig | None],
-        chosen: Mapping[str, Chosen[Any] | None],
-    ) -> None:
-        self.run = run
-        self.populations = {role: given for role, given in populations.items() if given is not None}
-        self.complete = bool(populations) and len(self.populations) == len(populations)
-        self.chosen = {key: given.component for key, given in chosen.items() if given is not None}
-
-    def faults(self, *, scored: bool) -> list[Fault]:
-        record = self._record() if scored else ()
-        return [
-            *self._sizes(),
-            *self._timing(),
-            *self._collaborations(),
-            *self._roles(),
-            *self._measures(),
-            *record,
-        ]
-
-    def _sizes(self) -> Iterator[Fault]:
-        for role, population in self.populations.items():
-            check = functools.partial(population.evolver.component.check, population.size)
-            yield from _refusal(("populations", role), check)
-
-    def _timing(self) -> Iterator[Fault]:
-        if self.run is None or self.run.timing != "parallel":
-            return
-        for role, population in self.populations.items():
-            if population.turns != 1:
-                message = f"expected 1 with run.timing = 'parallel', found {population.turns}"
-                yield Fault(("populations", role, "turns"), message, ("run", "timing"))
-
-    def _collaborations(self) -> Iterator[Fault]:
-        """Check strategies and aggregators; equal ones of several populations are checked together."""
-        by_key: dict[tuple[str, ...], list[str]] = {}
-        for role, population in self.populations.items():
-            own = population.collaboration is not None
-            by_key.setdefault(
-                ("populations", role, "collaboration") if own else ("collaboration",), []
-            ).append(role)
-        for path, roles in by_key.items():
-            yield from self._collaboration(path, roles)
-
-    def _collaboration(self, path: tuple[str, ...], roles: Sequence[str]) -> Iterator[Fault]:
-        """Check one strategy that chooses for the individuals of some populations."""
-        own = self.populations[roles[0]].collaboration
-        strategy = own.component if own else self.chosen.get("collaboration")
-        if strategy is None:
-            return
-        if len(self.populations) == 1:  # its individuals meet nobody, and have one score
-            yield from self._aggregators(path, roles, [1])
-            return
-        counts: dict[str, set[int]] = {}
-        for other, population in self.populations.items():
-            if roles == [other]:
-                continue
-            try:
-                counts[other] = set(sizes_of(strategy, population.size))
-            except ConfigurationError as error:
-                yield Fault(path, f"{error} (population '{other}')")
-                return
-        if len(self.populations) > 2 and len(set(map(frozenset, counts.values()))) > 1:
-            listed = ", ".join(map(str, sorted(set().union(*counts.values()))))
-            message = f"populations of different sizes give different numbers of collaborators: {listed}"
-            yield Fault(path, message)
-        yield from self._aggregators(path, roles, sorted(set().union(*counts.values())))
-
-    def _aggregators(
-        self, path: tuple[str, ...], roles: Sequence[str], counts: Sequence[int]
-    ) -> Iterator[Fault]:
-        """Check that the aggregators of some populations accept numbers of collaborators."""
-        places: dict[tuple[str, ...], Any] = {}
-        for role in roles:
-            own = self.populations[role].aggregator
-            if own is not None:
-                places["populations", role, "aggregator"] = own.component
-            elif "aggregator" in self.chosen:
-                places["aggregator",] = self.chosen["aggregator"]
-        for place, aggregator in places.items():
-            for count in counts:
-                yield from _refusal(place, functools.partial(aggregator.check, count), involves=path)
-
-    def _measures(self) -> Iterator[Fault]:
-        """Check that every measure that an evolver wants has exactly one supplier."""
-        if not self.complete or not {"simulator", "objective"} <= self.chosen.keys():
-            return
-        suppliers: list[tuple[str, tuple[str, ...]]] = [("evoframe", CORE_MEASURES)]
-        suppliers += [
-            (f"populations.{role}.encoder", measures_of_designs(population.encoder.component))
-            for role, population in self.populations.items()
-        ]
-        simulator, objective = self.chosen["simulator"], self.chosen["objective"]
-        suppliers.append(("simulator or objective", measures_of_simulations(simulator, objective)))
-        supplied = sorted({name for _, names in suppliers for name in names})
-        for role, population in self.populations.items():
-            path = ("populations", role, "evolver")
-            for wanted in wanted_by(population.evolver.component):
-                count = sum(names.count(wanted) for _, names in suppliers)
-                if count == 0:
-                    known = ", ".join(supplied)
-                    yield Fault(
-                        path, f"wants the measure '{wanted}', which nothing supplies; supplied: {known}"
-                    )
-                elif count > 1:
-                    listed = ", ".join(key for key, names in suppliers if wanted in names)
-                    yield Fault(path, f"wants the measure '{wanted}', which several supply: {listed}")
-
-    def _roles(self) -> Iterator[Fault]:
-        if not self.complete:
-            return
-        provided: list[str] = []
-        types: dict[str, ArrayType] = {}
-        for role, population in self.populations.items():
-            encoder = population.encoder.component
-            path = ("populations", role, "encoder")
-            declared = array_types_of(encoder)
-            for needed in encoder.requires:
-                if needed not in provided:
-                    yield Fault(path, f"requires the role '{needed}', which no earlier population provides")
-                elif types.get(needed, declared.get(needed)) != declared.get(needed, types.get(needed)):
-                    message = f"requires {declared[needed]} for the role '{needed}', found {types[needed]}"
-                    yield Fault(path, message)
-            types |= {role: type_ for role, type_ in declared.items() if role in encoder.provides}
-            for given in encoder.provides:
-                if given in provided:
-                    yield Fault(path, f"provides the role '{given}', which an earlier population provides")
-            provided += encoder.provides
-        simulator = self.chosen.get("simulator")
-        for needed in simulator.requires if simulator else ():
-            if needed not in provided:
-                yield Fault(("simulator",), f"requires the role '{needed}', which no population provides")
-
-    def _record(self) -> Iterator[Fault]:
-        if "simulator" in self.chosen and "objective" in self.chosen:
-            check = functools.partial(self.chosen["simulator"].check, self.chosen["objective"].record)
-            yield from _refusal(("objective",), check, involves=("simulator",))
-
-
 def _nested_options(class_: type[Any]) -> Iterator[tuple[str, str, bool]]:
     """Yield the options that choose components: name, kind, and whether it is a list of them."""
     try:
@@ -455,12 +333,3 @@ def _violations(offer: Offer, component: Any) -> Iterator[str]:
         yield f"{where} lacks {', '.join(missing)}"
     if not attrs.inspect(type(component)).is_frozen:
         yield f"{where} is not a frozen attrs class, so its options could change during a run"
-
-
-def _refusal(
-    path: tuple[str, ...], check: Callable[[], object], involves: tuple[str, ...] = ()
-) -> Iterator[Fault]:
-    try:
-        check()
-    except ConfigurationError as error:
-        yield Fault(path, str(error), involves)

@@ -18,6 +18,7 @@ from evoframe.contract.protocols import (
     Evolver,
     Executor,
     Objective,
+    RoleProvider,
     Simulator,
 )
 from evoframe.documents import Tree, as_read, unstructure
@@ -26,10 +27,12 @@ __all__ = [
     "ADDED_LATER",
     "COMPONENTS",
     "POPULATION_COMPONENTS",
+    "ROLE_COMPONENTS",
     "SHARED",
     "Chosen",
     "PluginSettings",
     "PopulationConfig",
+    "RoleConfig",
     "RunConfig",
     "RunSettings",
     "Source",
@@ -55,6 +58,9 @@ POPULATION_COMPONENTS: Mapping[str, str] = {
     "aggregator": "aggregator",
 }
 """Key within a population -> kind of the component that it chooses."""
+
+ROLE_COMPONENTS: Mapping[str, str] = {"provider": "role"}
+"""Key within a role that no population evolves -> kind of the component that it chooses."""
 
 SHARED = ("collaboration", "aggregator")
 """Keys of components that a population can choose for itself; by default, it has the one of the run."""
@@ -178,6 +184,21 @@ class PopulationConfig:
 
 
 @attrs.frozen
+class RoleConfig:
+    """The table ``[roles.NAME]``: a part of designs that no population evolves.
+
+    Attributes:
+        provider: Provides it.
+        draw: When a random one is drawn: once in a run, in each turn, or for each individual in each turn.
+            In the initial turn, and if all populations reproduce in parallel, the individuals are those of
+            the first population.
+    """
+
+    provider: Chosen[RoleProvider]
+    draw: Literal["run", "turn", "individual"] = "run"
+
+
+@attrs.frozen
 class RunConfig:
     """Everything that determines a run, resolved and checked.
 
@@ -190,6 +211,7 @@ class RunConfig:
         objective: Scores outcomes.
         executor: Distributes simulations over workers.
         plugins: Blocked and required distributions.
+        roles: Name -> roles that no population evolves.
         label: Name of the preset or file, for the default directory.
     """
 
@@ -201,6 +223,7 @@ class RunConfig:
     objective: Chosen[Objective]
     executor: Chosen[Executor]
     plugins: PluginSettings = attrs.field(factory=PluginSettings)
+    roles: Mapping[str, RoleConfig] = attrs.field(factory=dict)
     label: str = attrs.field(default="run", eq=False)
 
     def components(self) -> Iterator[tuple[str, Chosen[Any]]]:
@@ -209,6 +232,8 @@ class RunConfig:
             for key in POPULATION_COMPONENTS:
                 if chosen := getattr(population, key):
                     yield from chosen.nested(f"populations.{role}.{key}")
+        for name, given in self.roles.items():
+            yield from given.provider.nested(f"roles.{name}.provider")
         for key in COMPONENTS:
             yield from getattr(self, key).nested(key)
 
@@ -221,6 +246,9 @@ class RunConfig:
         return self._tables(_recorded_table, later=False)
 
     def _tables(self, table: Callable[[Chosen[Any]], Tree], *, later: bool) -> Tree:
+        roles = {
+            name: {"provider": table(role.provider), "draw": role.draw} for name, role in self.roles.items()
+        }
         return {
             "extends": False,
             "run": _settings(self.run, later=later),
@@ -228,6 +256,7 @@ class RunConfig:
                 role: _population_table(population, table, later=later)
                 for role, population in self.populations.items()
             },
+            **({"roles": roles} if roles else {}),
             **{key: table(getattr(self, key)) for key in COMPONENTS},
             "plugins": unstructure(self.plugins),
         }

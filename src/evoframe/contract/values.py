@@ -80,14 +80,26 @@ class ArrayType:
 
     Attributes:
         dtype: Name of its dtype, such as ``uint8``.
-        shape: Lengths of its axes.
+        shape: Lengths of its axes; ``None`` for any length.
     """
 
     dtype: str
-    shape: tuple[int, ...]
+    shape: tuple[int | None, ...]
 
     def __str__(self) -> str:
-        return f"{self.dtype}{list(self.shape)}"
+        lengths = ", ".join("any" if length is None else str(length) for length in self.shape)
+        return f"{self.dtype}[{lengths}]"
+
+    def accepts(self, other: ArrayType) -> bool:
+        """Return whether an array can have both types."""
+        return (
+            self.dtype == other.dtype
+            and len(self.shape) == len(other.shape)
+            and all(
+                None in (own, given) or own == given
+                for own, given in zip(self.shape, other.shape, strict=True)
+            )
+        )
 
     @classmethod
     def of(cls, array: NDArray[Any]) -> ArrayType:

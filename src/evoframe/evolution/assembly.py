@@ -10,6 +10,7 @@ from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.measures import Measures
 from evoframe.evolution.population import Population
 from evoframe.evolution.randomness import stream
+from evoframe.evolution.roles import roles_of
 from evoframe.evolution.timing import timing_of
 
 __all__ = ["assemble", "evaluator_of"]
@@ -30,6 +31,7 @@ def assemble(config: RunConfig) -> Coevolution:
                 for name, chosen in config.populations.items()
             }
         ),
+        roles=roles_of(config, config.simulator.component),
     )
 
 

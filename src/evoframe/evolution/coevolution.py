@@ -13,7 +13,7 @@ from typing import Any, Self
 import attrs
 from attrs.validators import ge
 
-from evoframe.contract import BestPair, Pair, Score, Turn, Workload
+from evoframe.contract import BestPair, Design, Pair, Score, Turn, Workload
 from evoframe.documents import structure
 from evoframe.errors import ComponentError
 from evoframe.evolution.collaboration import Collaboration
@@ -22,6 +22,7 @@ from evoframe.evolution.decoding import Meeting, decoded_designs
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.measures import Measures
 from evoframe.evolution.population import Population
+from evoframe.evolution.roles import Roles
 from evoframe.evolution.timing import Timing
 
 __all__ = ["Coevolution", "first_meetings"]
@@ -47,6 +48,7 @@ class Coevolution:
         evaluator: Scores designs.
         timing: The order in which populations reproduce.
         measures: Measures for evolvers that want them.
+        roles: Roles of designs that no population evolves.
         on_simulating: Called in each turn while the workers simulate, to complete what concerns the turn
             before. The populations are those of that turn, except the ones that have reproduced since.
         turn: Index of the latest turn; -1 before the first.
@@ -59,10 +61,12 @@ class Coevolution:
     evaluator: Evaluator
     timing: Timing
     measures: Measures
+    roles: Roles = attrs.field(factory=Roles)
     on_simulating: Callable[[], None] = attrs.field(default=lambda: None, init=False)
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
     _fittest_have_met: bool = attrs.field(default=False, init=False)
+    _judged: int = attrs.field(default=0, init=False)
     _clocks: tuple[float, ...] = attrs.field(init=False)
     _memories: dict[str, Any] = attrs.field(factory=dict, init=False)
     _recent: deque[dict[tuple[int, ...], Score]] = attrs.field(init=False)
@@ -119,9 +123,11 @@ class Coevolution:
         Args:
             changed: Names of the populations to include; by default all.
         """
-        loop = attrs.asdict(_Loop(self.turn, self.best_score, self._fittest_have_met, self._clocks))
-        if self.timing.kind != "asynchronous":
-            del loop["clocks"]
+        loop = attrs.asdict(
+            _Loop(self.turn, self.best_score, self._fittest_have_met, self._clocks, self._judged)
+        )
+        needed = {"clocks": self.timing.kind == "asynchronous", "judged": self.roles.are_redrawn}
+        loop = {key: value for key, value in loop.items() if needed.get(key, True)}
         wanted = [p for p in self.populations if changed is None or p.name in changed]
         return {"loop": loop, **{f"population/{p.name}": p.state() for p in wanted}, **self._memories}
 
@@ -135,7 +141,7 @@ class Coevolution:
         """
         loop = structure(state["loop"], _Loop, ("loop",))
         self.turn, self.best_score = loop.turn, loop.best_score
-        self._fittest_have_met = loop.fittest_have_met
+        self._fittest_have_met, self._judged = loop.fittest_have_met, loop.judged
         if self.timing.kind == "asynchronous":
             self._clocks = loop.clocks
         self._recent.clear()
@@ -144,6 +150,9 @@ class Coevolution:
         for collaboration in self.collaborations:
             if collaboration.state() is not None:
                 collaboration.restore(state[_part(collaboration)])
+        if self.roles.state() is not None:
+            self.roles.restore(state["roles"])
+        self.roles.begin_turn(self.turn)
         self._memories = self._remembered()
 
     def close(self) -> None:
@@ -182,6 +191,8 @@ class Coevolution:
             first: Whether it is the initial turn.
         """
         simulated = self.evaluator.simulations
+        self.roles.begin_turn(self.turn + 1)
+        self._judged = min((index for indices in meetings for index in indices), default=0)
         union = list(dict.fromkeys(itertools.chain.from_iterable(meetings.values())))
         scores = self._scores(union, self._while_simulating)
         judged = [index for indices in meetings for index in indices]
@@ -190,7 +201,8 @@ class Coevolution:
             for index in indices:
                 self._judge(index, own, first=first)
         pairs = self._pairs(scores)
-        self._recent.append({p.genomes: score for p, score in zip(pairs, scores.values(), strict=True)})
+        if not self.roles.are_redrawn:
+            self._recent.append({p.genomes: score for p, score in zip(pairs, scores.values(), strict=True)})
         self.turn += 1
         self._clocks = self.timing.advanced(self._clocks, self.turn, judged, len(scores))
         self._fittest_have_met = self._fittest() in scores
@@ -234,7 +246,7 @@ class Coevolution:
         for meeting in scores:
             met.setdefault(meeting[index], meeting)
         ordered = [met[position] for position in range(len(population.members))]
-        designs = list(decoded_designs(self.populations, ordered))
+        designs = list(self._decoded(ordered))
         measured: dict[str, list[float | None]] = {}
         for name in population.wants:
             values = self.measures.of(population, name, designs)
@@ -253,7 +265,9 @@ class Coevolution:
 
     def _remembered(self) -> dict[str, Any]:
         states = ((_part(collaboration), collaboration.state()) for collaboration in self.collaborations)
-        return {part: state for part, state in states if state is not None}
+        memories = {part: state for part, state in states if state is not None}
+        roles = self.roles.state()
+        return memories if roles is None else {**memories, "roles": roles}
 
     def _scores(
         self, meetings: Collection[Meeting], on_simulating: Callable[[], None] = lambda: None
@@ -265,10 +279,13 @@ class Coevolution:
         # Sorted, so that designs with the same first members share a batch.
         unknown = sorted(set(meetings) - known.keys())
         with self._naming_individuals(unknown):
-            designs = decoded_designs(self.populations, unknown)
+            designs = self._decoded(unknown)
             scores = self.evaluator.evaluate(designs, len(unknown), on_simulating)
         known.update(zip(unknown, scores, strict=True))
         return {meeting: known[meeting] for meeting in meetings}
+
+    def _decoded(self, meetings: Iterable[Meeting]) -> Iterator[Design]:
+        return decoded_designs(self.populations, meetings, self.roles, self._judged)
 
     def _ids(self, meetings: Iterable[Meeting]) -> Iterator[tuple[int, ...]]:
         """Yield the ids of the genomes of each meeting."""
@@ -301,7 +318,7 @@ class Coevolution:
                 self.best_score, best = score.value, meeting
         if best is None or self.best_score is None:
             return None
-        [design] = decoded_designs(self.populations, [best])
+        [design] = self._decoded([best])
         chosen = list(zip(self.populations, best, strict=True))
         return BestPair(
             turn=self.turn,
@@ -352,3 +369,4 @@ class _Loop:
     best_score: float | None
     fittest_have_met: bool
     clocks: tuple[float, ...] = ()
+    judged: int = 0

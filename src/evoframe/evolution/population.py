@@ -203,7 +203,7 @@ class Population:
         """Refuse arrays whose types or shapes differ from those that the encoder declares."""
         for role in roles:
             declared = self._array_types.get(role)
-            if declared is not None and declared != (there := ArrayType.of(design.roles[role])):
+            if declared is not None and not declared.accepts(there := ArrayType.of(design.roles[role])):
                 problem = f"{verb} {there} for the role '{role}', expected {declared}"
                 raise ComponentError(self._encoder, problem, self.called(position))
 

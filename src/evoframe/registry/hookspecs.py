@@ -19,6 +19,7 @@ from evoframe.contract import (
     Evolver,
     Executor,
     Objective,
+    RoleProvider,
     Simulator,
     Turn,
 )
@@ -104,6 +105,17 @@ def evoframe_objectives() -> Mapping[str, type[Objective]]:  # type: ignore[empt
 @hookspec
 def evoframe_executors() -> Mapping[str, type[Executor]]:  # type: ignore[empty-body]
     """Offer executors, which distribute simulations over workers.
+
+    Returns:
+        Name in configuration files -> frozen attrs class, whose fields are the options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_roles() -> Mapping[str, type[RoleProvider]]:  # type: ignore[empty-body]
+    """Offer providers of roles that no population evolves.
 
     Returns:
         Name in configuration files -> frozen attrs class, whose fields are the options.

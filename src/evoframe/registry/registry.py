@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import pluggy
 
-from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, Source, protocols
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, ROLE_COMPONENTS, Source, protocols
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import suggestion
 from evoframe.registry import hookspecs
@@ -50,6 +50,7 @@ KINDS: Mapping[str, Kind] = {
     "evolver": Kind("evoframe_evolvers", protocols.Evolver),
     "executor": Kind("evoframe_executors", protocols.Executor),
     "objective": Kind("evoframe_objectives", protocols.Objective),
+    "role": Kind("evoframe_roles", protocols.RoleProvider),
     "simulator": Kind("evoframe_simulators", protocols.Simulator),
     "strategy": Kind("evoframe_strategies", protocols.CollaborationStrategy),
 }
@@ -57,9 +58,11 @@ KINDS: Mapping[str, Kind] = {
 
 _NOUNS = {"strategy": "collaboration strategy"}  # kind -> its name in messages, if different
 
-_KEYS = {kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()} | {
-    kind: key for key, kind in COMPONENTS.items()
-}  # kind -> configuration key
+_KEYS = (
+    {kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()}
+    | {kind: f"roles.NAME.{key}" for key, kind in ROLE_COMPONENTS.items()}
+    | {kind: key for key, kind in COMPONENTS.items()}
+)  # kind -> configuration key
 
 
 @attrs.frozen
