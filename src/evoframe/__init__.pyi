@@ -14,6 +14,7 @@ from .contract.config import (
     RunConfig as RunConfig,
     RunSettings as RunSettings,
     Source as Source,
+    StartSettings as StartSettings,
 )
 from .contract.drawings import (
     Geometry as Geometry,

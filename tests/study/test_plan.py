@@ -13,7 +13,7 @@ import tomli_w
 from toy_study import STUDY
 
 from evoframe import ConfigurationError, Layer, run
-from evoframe.evolution.coevolution import first_meetings
+from evoframe.evolution.meetings import first_meetings
 from evoframe.registry.discovery import discover
 from evoframe.study.plan import Study, read_study, study_names
 from evoframe.study.rows import Row

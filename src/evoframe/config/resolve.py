@@ -27,6 +27,7 @@ from evoframe.contract import (
     RunConfig,
     RunSettings,
     Simulator,
+    StartSettings,
     is_role,
 )
 from evoframe.documents import Fault, StructureError, Tree, structure
@@ -156,6 +157,7 @@ class _Plain:
     size: int = attrs.field(default=25, validator=validators.ge(2))
     goal: Literal["maximize", "minimize"] = "maximize"
     turns: int = attrs.field(default=1, validator=validators.ge(1))
+    start: StartSettings = attrs.field(factory=StartSettings)
 
 
 @attrs.frozen

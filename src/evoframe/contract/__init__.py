@@ -15,6 +15,7 @@ from evoframe.contract.config import (
     RunConfig,
     RunSettings,
     Source,
+    StartSettings,
     deciding,
     is_role,
 )
@@ -155,6 +156,7 @@ __all__ = [
     "Scores",
     "Simulator",
     "Source",
+    "StartSettings",
     "SupportsArrayTypes",
     "SupportsBatches",
     "SupportsBitGeneration",

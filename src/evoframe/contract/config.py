@@ -36,6 +36,7 @@ __all__ = [
     "RunConfig",
     "RunSettings",
     "Source",
+    "StartSettings",
     "deciding",
     "is_role",
 ]
@@ -160,6 +161,30 @@ class Chosen(Generic[C]):
 
 
 @attrs.frozen
+class StartSettings:
+    """The table ``[populations.NAME.start]``: the initial population, if it is not just drawn at random.
+
+    Attributes:
+        run: Directory of another run, relative to the working directory, with whose genomes it starts; the
+            rest are mutants of them.
+        population: Name of the population in that run; empty: the same name.
+        take: Its fittest members, or its member of the champion only.
+        draws: Number of random initial populations; the population starts with the fittest individuals of
+            all of them (in meetings of the individuals of each draw, as in the initial turn).
+    """
+
+    run: str = ""
+    population: str = ""
+    take: Literal["population", "champion"] = "population"
+    draws: int = attrs.field(default=1, validator=validators.ge(1))
+
+    @draws.validator
+    def _not_both(self, _: object, draws: int) -> None:
+        if draws > 1 and self.run:
+            raise ValueError("set either run or draws, not both")
+
+
+@attrs.frozen
 class PopulationConfig:
     """The table ``[populations.ROLE]``.
 
@@ -172,6 +197,7 @@ class PopulationConfig:
         goal: Whether its individuals evolve towards large or small scores; with opposite goals, populations
             compete.
         turns: Number of its turns in each round, for one of a population with 1.
+        start: Its initial individuals.
     """
 
     size: int = attrs.field(validator=validators.ge(2))
@@ -181,6 +207,7 @@ class PopulationConfig:
     aggregator: Chosen[Aggregator | Credit] | None = None
     goal: Literal["maximize", "minimize"] = attrs.field(default="maximize", metadata=ADDED_LATER)
     turns: int = attrs.field(default=1, validator=validators.ge(1), metadata=ADDED_LATER)
+    start: StartSettings = attrs.field(default=StartSettings(), metadata=ADDED_LATER)
 
 
 @attrs.frozen

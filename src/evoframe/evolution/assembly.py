@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
 from evoframe.contract import RunConfig, blaming, measures_of_simulations, wanted_by
 from evoframe.evolution.coevolution import Coevolution
 from evoframe.evolution.collaboration import Collaboration
 from evoframe.evolution.credit import Judge
+from evoframe.evolution.drafts import Drafts
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.measures import Measures
 from evoframe.evolution.population import Population
@@ -15,10 +20,23 @@ from evoframe.evolution.timing import timing_of
 
 __all__ = ["assemble", "evaluator_of"]
 
+_NO_GENOMES: Mapping[str, Sequence[Any]] = MappingProxyType({})
 
-def assemble(config: RunConfig) -> Coevolution:
-    """Return the loop that a configuration describes, ready for the first turn."""
-    populations = tuple(_population(config, name) for name in config.populations)
+
+def assemble(config: RunConfig, genomes: Mapping[str, Sequence[Any]] = _NO_GENOMES) -> Coevolution:
+    """Return the loop that a configuration describes, ready for the first turn.
+
+    Args:
+        config: The configuration.
+        genomes: Genomes with which populations start, as JSON values: name of a population -> genomes.
+
+    Raises:
+        ConfigurationError: A component cannot start, or an evolver cannot start with given genomes.
+    """
+    populations = tuple(_population(config, name, f"population/{name}") for name in config.populations)
+    for population in populations:
+        if population.name in genomes:
+            population.seed(genomes[population.name])
     return Coevolution(
         populations=populations,
         collaborations=tuple(_collaboration(config, own, populations) for own in populations),
@@ -32,15 +50,36 @@ def assemble(config: RunConfig) -> Coevolution:
             }
         ),
         roles=roles_of(config, config.simulator.component),
+        drafts=_drafts(config),
     )
 
 
-def _population(config: RunConfig, name: str) -> Population:
+def _drafts(config: RunConfig) -> Drafts:
+    """Return random initial populations, of which the fittest individuals are chosen."""
+    draws = {name: population.start.draws for name, population in config.populations.items()}
+    if max(draws.values()) == 1:
+        return Drafts()
+    drawn = (
+        tuple(
+            _population(config, name, _draw(name, min(number, own - 1), own)) for name, own in draws.items()
+        )
+        for number in range(max(draws.values()))
+    )
+    return Drafts(tuple(draws.values()), tuple(drawn))
+
+
+def _draw(name: str, number: int, draws: int) -> str:
+    """Return the name of the random stream of a draw; a single one is that of the run itself."""
+    return f"population/{name}/draw/{number}" if draws > 1 else f"population/{name}"
+
+
+def _population(config: RunConfig, name: str, random: str) -> Population:
+    """Return a population whose evolver uses the random stream called *random*."""
     chosen = config.populations[name]
     encoder, evolver = chosen.encoder.component, chosen.evolver.component
     with blaming(f"populations.{name}.evolver"):
         evolution = evolver.start(
-            encoder.inputs, encoder.outputs, chosen.size, stream(config.run.seed, f"population/{name}")
+            encoder.inputs, encoder.outputs, chosen.size, stream(config.run.seed, random)
         )
     return Population(
         name=name,

@@ -19,13 +19,15 @@ from evoframe.errors import ComponentError
 from evoframe.evolution.collaboration import Collaboration
 from evoframe.evolution.credit import Judge, scored_meetings
 from evoframe.evolution.decoding import Meeting, decoded_designs
+from evoframe.evolution.drafts import Drafts
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.measures import Measures
+from evoframe.evolution.meetings import first_meetings, meetings_with
 from evoframe.evolution.population import Population
 from evoframe.evolution.roles import Roles
 from evoframe.evolution.timing import Timing
 
-__all__ = ["Coevolution", "first_meetings"]
+__all__ = ["Coevolution"]
 
 
 @attrs.define
@@ -49,6 +51,7 @@ class Coevolution:
         timing: The order in which populations reproduce.
         measures: Measures for evolvers that want them.
         roles: Roles of designs that no population evolves.
+        drafts: Random initial populations, if some start with the fittest of several.
         on_simulating: Called in each turn while the workers simulate, to complete what concerns the turn
             before. The populations are those of that turn, except the ones that have reproduced since.
         turn: Index of the latest turn; -1 before the first.
@@ -62,6 +65,7 @@ class Coevolution:
     timing: Timing
     measures: Measures
     roles: Roles = attrs.field(factory=Roles)
+    drafts: Drafts = attrs.field(factory=Drafts)
     on_simulating: Callable[[], None] = attrs.field(default=lambda: None, init=False)
     turn: int = attrs.field(default=-1, init=False)
     best_score: float | None = attrs.field(default=None, init=False)
@@ -161,10 +165,16 @@ class Coevolution:
 
     def _initial_turn(self) -> Turn:
         started = time.perf_counter()
+        simulated = self.evaluator.simulations
+        if self.drafts.populations:
+            self.roles.begin_turn(0)
+            signs = [judge.sign for judge in self.judges]
+            self.drafts.seed(self.populations, signs, self.roles, self.evaluator)
         for population in self.populations:
             population.reproduce()
         met = first_meetings([len(population.genomes) for population in self.populations])
-        return self._complete_turn({tuple(range(len(self.populations))): met}, started, first=True)
+        judged = tuple(range(len(self.populations)))
+        return self._complete_turn({judged: met}, started, simulated=simulated, first=True)
 
     def _take_turn(self, reproducing: Sequence[int]) -> Turn:
         started = time.perf_counter()
@@ -174,23 +184,29 @@ class Coevolution:
             self.populations[index].reproduce(keep_candidates=len(reproducing) > 1)
         met: dict[tuple[int, ...], list[Meeting]] = {}
         for index in reproducing:
-            met[(index,)] = _meetings(index, self.collaborations[index].teams())
+            met[(index,)] = meetings_with(index, self.collaborations[index].teams())
         return self._complete_turn(met, started)
 
     def _fittest(self) -> Meeting:
         return tuple(population.fittest() for population in self.populations)
 
     def _complete_turn(
-        self, meetings: Mapping[tuple[int, ...], Sequence[Meeting]], started: float, *, first: bool = False
+        self,
+        meetings: Mapping[tuple[int, ...], Sequence[Meeting]],
+        started: float,
+        *,
+        simulated: int | None = None,
+        first: bool = False,
     ) -> Turn:
         """Score the meetings of a turn, and set the fitness of the populations that are judged by them.
 
         Args:
             meetings: Indices of populations -> the unique meetings in which their members are evaluated.
             started: When the turn started.
+            simulated: Number of simulations at that time; by default the present one.
             first: Whether it is the initial turn.
         """
-        simulated = self.evaluator.simulations
+        before = self.evaluator.simulations if simulated is None else simulated
         self.roles.begin_turn(self.turn + 1)
         self._judged = min((index for indices in meetings for index in indices), default=0)
         union = list(dict.fromkeys(itertools.chain.from_iterable(meetings.values())))
@@ -214,7 +230,7 @@ class Coevolution:
             best_pair=self._best_pair(scores),
             workload=Workload(
                 pairs=len(scores),
-                simulations=self.evaluator.simulations - simulated,
+                simulations=self.evaluator.simulations - before,
                 seconds=time.perf_counter() - started,
             ),
         )
@@ -327,33 +343,6 @@ class Coevolution:
             genomes={population.name: population.dump(i) for population, i in chosen},
             design=design,
         )
-
-
-def first_meetings(sizes: Sequence[int]) -> list[Meeting]:
-    """Return the meetings of the initial turn, without repeats.
-
-    Each individual meets every individual of each other population. With three and more populations, the
-    others are combined by position, and those of smaller populations recur, so that the number of meetings
-    grows with the square of the sizes only.
-
-    Args:
-        sizes: Sizes of the populations, in the order of turns.
-    """
-    met: dict[Meeting, None] = {}
-    for index, size in enumerate(sizes):
-        met.update(dict.fromkeys(_meetings(index, [_teams_of_others(index, sizes)] * size)))
-    return list(met)
-
-
-def _teams_of_others(index: int, sizes: Sequence[int]) -> list[Meeting]:
-    """Return teams that cover all members of the other populations; those of smaller ones recur."""
-    others = [size for i, size in enumerate(sizes) if i != index]
-    return [tuple(position % size for size in others) for position in range(max(others, default=1))]
-
-
-def _meetings(index: int, teams: Sequence[Sequence[tuple[int, ...]]]) -> list[Meeting]:
-    """Return the meetings of each member of a population with each of its teams from the others."""
-    return [(*team[:index], member, *team[index:]) for member, own in enumerate(teams) for team in own]
 
 
 def _part(collaboration: Collaboration) -> str:

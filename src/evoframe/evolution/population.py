@@ -24,11 +24,12 @@ from evoframe.contract import (
     Network,
     PopulationReport,
     SupportsLoad,
+    SupportsSeeds,
     array_types_of,
     blaming,
 )
 from evoframe.documents import structure
-from evoframe.errors import ComponentError, RunError
+from evoframe.errors import ComponentError, ConfigurationError, RunError
 from evoframe.files import json_text
 
 __all__ = ["Population"]
@@ -88,6 +89,25 @@ class Population:
     def present(self) -> tuple[Member, ...]:
         """The members, followed by the individuals that were admitted in this turn."""
         return (*self.members, *(member for member, _ in self._guests)) if self._guests else self.members
+
+    def seed(self, genomes: Sequence[Any]) -> None:
+        """Start with these *genomes*, given as JSON values; called before the first :meth:`reproduce`.
+
+        Raises:
+            ConfigurationError: The evolver cannot start with them.
+        """
+        if not isinstance(self.evolver, SupportsSeeds):
+            raise ConfigurationError(
+                "the evolver cannot start with given genomes; choose another, or remove "
+                f"populations.{self.name}.start",
+                key=self._evolver,
+            )
+        try:
+            self.evolver.seed([self.evolver.load(genome) for genome in genomes])
+        except ValueError as error:
+            raise ConfigurationError(
+                f"does not accept a genome: {error}", key=f"populations.{self.name}.start"
+            ) from error
 
     def begin_turn(self) -> None:
         """Dismiss the individuals that were admitted in the turn before."""
@@ -267,6 +287,11 @@ class Population:
         if not self.members:
             raise RunError(f"population '{self.name}' has no members before the first turn")
         return max(range(len(self.members)), key=lambda position: (_rank(self.members[position]), -position))
+
+    def ranked(self) -> list[int]:
+        """Return the positions of all members, the fittest first, diverged ones last, ties by position."""
+        ranks = [(m.diverged, -_fitness(m), position) for position, m in enumerate(self.members)]
+        return [position for *_, position in sorted(ranks)]
 
     def report(self) -> PopulationReport:
         """Return the report of the latest turn, in which the population must have been evaluated."""

@@ -28,7 +28,7 @@ from evoframe.record import (
     provenance_of,
 )
 from evoframe.registry import Plugins
-from evoframe.runs.resuming import configuration_of, restore
+from evoframe.runs.restoring import configuration_of, restore
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
 

@@ -18,8 +18,9 @@ from evoframe.files import locked
 from evoframe.messages import cause_of, quantity
 from evoframe.record import Run, Store, Verification, keep_verification
 from evoframe.registry import Observers, Plugins
+from evoframe.runs.blame import completed
 
-__all__ = ["Execution", "completed", "verify_champion"]
+__all__ = ["Execution", "verify_champion"]
 
 _log = logging.getLogger(__name__)
 
@@ -136,15 +137,6 @@ class _Saving:
         self._store.save(turn, self._state([report.population for report in turn.reports]))
         _log_turn(turn, self._unit)
         self._observers.tell("evoframe_turn_finished", turn=turn)
-
-
-def completed(error: ComponentError, config: RunConfig, turn: str) -> ComponentError:
-    """Return an error of a component with its name and plugin, and the turn."""
-    chosen = dict(config.components()).get(error.component)
-    if chosen is None:
-        return attrs.evolve(error)
-    concerns = ", ".join(part for part in (turn, error.concerns) if part)
-    return attrs.evolve(error, offered=f"'{chosen.name}' (plugin {chosen.source})", concerns=concerns)
 
 
 def verify_champion(config: RunConfig, run: Run) -> Verification | None:

@@ -20,6 +20,7 @@ from evoframe.files import LOCK_FILE, Lock, acquire_lock, is_leftover, released_
 from evoframe.record import CONFIG_FILE, Run, Store, open_run, provenance_of
 from evoframe.registry import Plugins, discover
 from evoframe.runs.execution import Execution
+from evoframe.runs.warm_start import starting_genomes
 
 __all__ = ["open_store", "prepare", "run"]
 
@@ -80,7 +81,7 @@ def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Exe
         InputError: The directory is not empty, or cannot be created.
     """
     usable = plugins.without(config.plugins.block)
-    coevolution = assemble(config)
+    coevolution = assemble(config, starting_genomes(config, plugins))
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
         tables = as_read({**config.recorded(), "provenance": provenance_of(config)})
