@@ -28,7 +28,8 @@ def assemble(config: RunConfig, genomes: Mapping[str, Sequence[Any]] = _NO_GENOM
 
     Args:
         config: The configuration.
-        genomes: Genomes with which populations start, as JSON values: name of a population -> genomes.
+        genomes: Genomes with which populations start, as JSON values: name of a population -> genomes. A loop
+            whose state is restored needs none.
 
     Raises:
         ConfigurationError: A component cannot start, or an evolver cannot start with given genomes.
@@ -87,6 +88,7 @@ def _population(config: RunConfig, name: str, random: str) -> Population:
         evolver=evolution,
         rng=stream(config.run.seed, f"collaboration/{name}"),
         wants=wanted_by(evolver),
+        source=chosen.start.run,
     )
 
 

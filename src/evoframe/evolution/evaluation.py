@@ -31,7 +31,7 @@ __all__ = ["Evaluator", "score_designs"]
 
 T = TypeVar("T")
 
-_LARGEST_BATCH = 12  # designs; they share the overhead of a call and the preparation of a common body
+_BATCH = 4  # designs, unless the simulator says otherwise; they share the overhead of a call
 _BATCHES_PER_WORKER = 2  # can be taken before the first result: the current one, and the next
 
 
@@ -114,7 +114,7 @@ class Evaluator:
 
     def _batch_size(self, left: int) -> int:
         """Return the size of the next batch: they shrink, so that all workers finish together."""
-        return min(max(1, left // self.workers.workers), batch_size_of(self.simulator, _LARGEST_BATCH))
+        return min(max(1, left // self.workers.workers), batch_size_of(self.simulator, _BATCH))
 
     def _key(self, design: Design, record: Record) -> bytes:
         with blaming("simulator"):

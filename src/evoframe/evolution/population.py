@@ -53,6 +53,7 @@ class Population:
         evolver: Evolves its genomes.
         rng: Random stream for the choice of its collaborators.
         wants: Names of the measures that its evolver receives.
+        source: Run whose genomes it starts with; they must be given by :meth:`seed`. Empty for none.
         generation: Number of generations since the initial one; -1 before that.
         genomes: The current genomes.
         members: The individuals, one for each genome.
@@ -63,6 +64,7 @@ class Population:
     evolver: EvolverRun
     rng: np.random.Generator
     wants: tuple[str, ...] = ()
+    source: str = ""
     generation: int = -1
     genomes: Sequence[Any] = ()
     members: tuple[Member, ...] = ()
@@ -104,6 +106,7 @@ class Population:
             )
         try:
             self.evolver.seed([self.evolver.load(genome) for genome in genomes])
+            self.source = ""
         except ValueError as error:
             raise ConfigurationError(
                 f"does not accept a genome: {error}", key=f"populations.{self.name}.start"
@@ -151,6 +154,10 @@ class Population:
         Args:
             keep_candidates: Whether collaborators are chosen from the generation before, in this turn.
         """
+        if self.source and self.generation < 0:
+            raise RunError(
+                f"population '{self.name}' starts with genomes of the run {self.source}, which were not given"
+            )
         before = (self.genomes, self.members) if keep_candidates else None
         offspring = self._offspring or self._next_generation()
         if isinstance(offspring, ComponentError):

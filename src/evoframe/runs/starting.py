@@ -84,7 +84,7 @@ def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Exe
     coevolution = assemble(config, starting_genomes(config, plugins))
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
-        tables = as_read({**config.recorded(), "provenance": provenance_of(config)})
+        tables = as_read({**config.recorded(), "provenance": provenance_of(config, usable.observers)})
         return Execution(
             config, usable, directory, tables, coevolution, _new_store(directory, config, tables)
         )
