@@ -5,11 +5,15 @@ from __future__ import annotations
 import pytest
 
 from evoframe import Encoder, SupportsInputNames, SupportsOutputNames
-from evoframe_encoders import CppnController, CppnMorphology, evoframe_encoders
+from evoframe_encoders import CppnController, CppnMorphology, CppnVoxels, evoframe_encoders
 
 
 def test_they_are_registered_by_name() -> None:
-    assert evoframe_encoders() == {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}
+    assert evoframe_encoders() == {
+        "cppn-controller": CppnController,
+        "cppn-morphology": CppnMorphology,
+        "cppn-voxels": CppnVoxels,
+    }
 
 
 @pytest.mark.parametrize("encoder", evoframe_encoders().values())
