@@ -101,6 +101,10 @@ class Shapley:
 
     def credit(self, meetings: ScoredMeetings, population: int) -> NDArray[np.float64]:
         """Return the mean Shapley value of each member; NaN if all of its meetings diverged."""
+        return mean_of_each_member(meetings, population, self.values(meetings, population))
+
+    def values(self, meetings: ScoredMeetings, population: int) -> NDArray[np.float64]:
+        """Return the Shapley value of a role in each meeting, ``float64[n]``; NaN if the meeting diverged."""
         game = _Game(meetings)
         joined = Counter(
             tuple(sorted(order[: order.index(population)]))
@@ -109,7 +113,7 @@ class Shapley:
         total = np.zeros(len(meetings.scores))
         for before, orders in sorted(joined.items()):
             total += orders / joined.total() * game.gain(before, population)
-        return mean_of_each_member(meetings, population, total)
+        return total
 
     def _orders(self, n: int, turn: int) -> Iterator[Roles]:
         """Yield all orders of *n* roles, or as many random ones as there are samples."""

@@ -154,4 +154,5 @@ class PowerMean(_PositiveMean):
         unit = values[-1] if self.exponent > 0 else values[0]
         logs = (math.log(value) - math.log(unit) for value in values)
         excess = math.fsum(math.expm1(self.exponent * log) for log in logs) / len(values)
-        return unit * math.exp(math.log1p(excess) / self.exponent)
+        root = math.exp(math.log1p(excess) / self.exponent / 2)
+        return unit * root * root  # not their square, which exceeds all floats if unit is the smallest float
