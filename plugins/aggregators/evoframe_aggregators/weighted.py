@@ -81,7 +81,7 @@ class WeightedMean:
             advice = ", or aggregator.fold = true" if n in FOLDED else ""
             raise ConfigurationError(
                 f"wm has no weights for {counted(n, 'collaborator')} (the paper gives {paper}); "
-                f'set aggregator.weights to "geometric" or a list{advice}'
+                f'set aggregator.weights = "geometric" (for any number) or a list of weights{advice}'
             )
         return weights
 

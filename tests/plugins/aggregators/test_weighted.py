@@ -192,7 +192,7 @@ def numbers(message: str) -> list[int]:
 def test_wm_without_weights_names_the_paper_s_numbers_and_the_options_to_set(n: int) -> None:
     message = refusal(WeightedMean(), n)
     assert numbers(message) == [n, *PAPER_WEIGHTS]
-    assert 'aggregator.weights to "geometric"' in message
+    assert 'aggregator.weights = "geometric"' in message
     assert "aggregator.fold = true" in message
     WeightedMean(weights="geometric").check(n)
 
@@ -202,7 +202,7 @@ def test_wm_without_weights_names_the_paper_s_numbers_and_the_options_to_set(n: 
 def test_fold_is_suggested_only_where_it_helps(component: Any, n: int) -> None:
     message = refusal(component, n)
     assert numbers(message) == [n, *PAPER_WEIGHTS]
-    assert 'aggregator.weights to "geometric"' in message
+    assert 'aggregator.weights = "geometric"' in message
     assert "fold" not in message
 
 
