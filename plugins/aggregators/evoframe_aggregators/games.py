@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import attrs
 import numpy as np
@@ -24,7 +24,7 @@ from evoframe_aggregators.scores import require_one
 __all__ = ["Difference", "Shapley"]
 
 Roles = tuple[int, ...]
-"""Indices of populations, ascending."""
+"""Indices of populations."""
 
 
 @attrs.frozen
@@ -37,9 +37,9 @@ class _Game:
     def roles(self) -> Roles:
         return tuple(range(len(self.meetings.populations)))
 
-    def value(self, roles: Iterable[int]) -> NDArray[np.float64]:
+    def value(self, roles: Roles) -> NDArray[np.float64]:
         """Return the value of these roles in each meeting, ``float64[n]``; NaN if all of them diverged."""
-        return mean_of_each_group(common(self.meetings, sorted(roles)), self.meetings.scores)
+        return mean_of_each_group(common(self.meetings, roles), self.meetings.scores)
 
     def gain(self, before: Roles, role: int) -> NDArray[np.float64]:
         """Return what *role* adds to the value of the roles *before* it, ``float64[n]``; NaN if diverged."""

@@ -150,13 +150,14 @@ def test_values_are_linear_in_the_scores(meetings: ScoredMeetings, shift: int, f
         assert credited(component, moved) == pytest.approx(expected, abs=1e-10)
 
 
-@given(games((3,)), st.integers(1, 5), st.integers(0, 99))
+@given(games((3,), diverged=True), st.integers(1, 5), st.integers(0, 99))
 def test_samples_are_the_mean_of_some_orders(meetings: ScoredMeetings, samples: int, seed: int) -> None:
     rng = np.random.default_rng([seed, meetings.turn])
     orders = [rng.permutation(3).tolist() for _ in range(samples)]
     values = {index: shapley_value(meetings, index, 1, orders) for index in clean(meetings)}
     expected = mean_over_meetings(meetings, 1, values)
-    assert credited(Shapley(samples=samples, seed=seed), meetings, 1) == pytest.approx(expected, abs=1e-12)
+    found = credited(Shapley(samples=samples, seed=seed), meetings, 1)
+    assert found == pytest.approx(expected, abs=1e-12, nan_ok=True)
 
 
 @given(games((3,)), st.integers(1, 5), st.integers(0, 99))

@@ -1,3 +1,4 @@
+import decimal
 import itertools
 import math
 import statistics
@@ -146,6 +147,17 @@ def test_power_is_its_definition(scores: list[float], exponent: float) -> None:
     mean = math.fsum(score**exponent for score in scores) / len(scores)
     power = aggregate(PowerMean(exponent=exponent), scores)
     assert power == pytest.approx(mean ** (1 / exponent), rel=1e-11)
+
+
+@given(scores_of(st.floats(1e-3, 1e3), range(1, 6)), st.floats(-25, -2), st.sampled_from([1, -1]))
+def test_power_is_its_definition_for_small_exponents(scores: list[float], digits: float, sign: int) -> None:
+    exponent = sign * 10**digits
+    with decimal.localcontext(prec=60):
+        power = decimal.Decimal(exponent)
+        powers = (decimal.Decimal(score) ** power for score in scores)
+        mean = sum(powers, decimal.Decimal()) / len(scores)
+        expected = float(mean ** (1 / power))
+    assert aggregate(PowerMean(exponent=exponent), scores) == pytest.approx(expected, rel=1e-13)
 
 
 @given(scores_of(POSITIVE))
