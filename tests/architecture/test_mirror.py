@@ -14,7 +14,7 @@ TESTS = ROOT / "tests"
 ELSEWHERE: Mapping[str, str] = {
     **{
         f"src/evoframe/testing/{kind}s.py": f"tests/testing/test_{kind}_contract.py"
-        for kind in ("aggregator", "encoder", "evolver", "executor", "objective", "simulator")
+        for kind in ("aggregator", "credit", "encoder", "evolver", "executor", "objective", "simulator")
     },
     "src/evoframe/testing/strategies.py": "tests/testing/test_strategy_contract.py",
 }

@@ -36,11 +36,11 @@ def evoframe(site: Path, tmp_path: Path) -> Evoframe:
 
 def test_an_aggregator_is_selected_by_name(evoframe: Evoframe, tmp_path: Path) -> None:
     finished = evoframe(
-        "run", "quick", "--set", "aggregator=median", "--set", "run.generations=1", "--out", "here"
+        "run", "quick", "--set", "aggregator=middle", "--set", "run.generations=1", "--out", "here"
     )
     assert finished.returncode == 0, finished.stderr
     config = tmp_path.joinpath("here", "config.toml").read_text()
-    assert '[aggregator]\nname = "median"' in config
+    assert '[aggregator]\nname = "middle"' in config
     assert "aggregator = \"'median' of acme-median 2.1\"" in config
 
 
@@ -54,7 +54,7 @@ def test_a_plugin_that_fails_to_import_is_skipped_with_a_warning(evoframe: Evofr
 
 def test_the_list_of_plugins_shows_both(evoframe: Evoframe) -> None:
     listed = json.loads(evoframe("plugins", "list", "--json").stdout)
-    assert {"median"} == {c["name"] for c in listed["components"] if c["distribution"] == "acme-median"}
+    assert {"middle"} == {c["name"] for c in listed["components"] if c["distribution"] == "acme-median"}
     assert [skipped["distribution"] for skipped in listed["skipped"]] == ["acme-broken"]
     assert "acme-broken 0.3" in evoframe("plugins", "list").stdout
 
@@ -68,10 +68,10 @@ def test_an_unknown_name_is_answered_with_skipped_plugins(evoframe: Evoframe) ->
 
 def test_the_environment_blocks_and_requires_distributions(evoframe: Evoframe) -> None:
     blocked = evoframe(
-        "config", "show", "--set", "aggregator=median", EVOFRAME_PLUGINS_BLOCK="acme-median,acme-broken"
+        "config", "show", "--set", "aggregator=middle", EVOFRAME_PLUGINS_BLOCK="acme-median,acme-broken"
     )
     assert blocked.returncode == 2
-    assert "'median'" in blocked.stderr
+    assert "'middle'" in blocked.stderr
     assert "acme-broken" not in blocked.stderr
     required = evoframe("plugins", "list", EVOFRAME_PLUGINS_REQUIRE="acme-broken")
     assert required.returncode == 2
@@ -80,9 +80,9 @@ def test_the_environment_blocks_and_requires_distributions(evoframe: Evoframe) -
 
 def test_the_configuration_blocks_and_requires_distributions(evoframe: Evoframe) -> None:
     blocked = evoframe(
-        "config", "show", "--set", "aggregator=median", "--set", 'plugins.block=["acme-median"]'
+        "config", "show", "--set", "aggregator=middle", "--set", 'plugins.block=["acme-median"]'
     )
-    assert (blocked.returncode, "'median'" in blocked.stderr) == (2, True)
+    assert (blocked.returncode, "'middle'" in blocked.stderr) == (2, True)
     required = evoframe("config", "show", "--set", 'plugins.require=["acme-nothing"]')
     assert (required.returncode, "'acme-nothing'" in required.stderr) == (2, True)
     assert "plugins.require" in required.stderr

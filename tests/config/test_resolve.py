@@ -178,7 +178,7 @@ class TestRealComponents:
     @pytest.mark.parametrize(
         ("override", "key", "parts"),
         [
-            ("aggregator=wn", "aggregator", ["'wn'", "'wm'", "am, gm, hm, wm"]),
+            ("aggregator=wn", "aggregator", ["'wn'", "'wm'", "am, difference, gm"]),
             ("collaboration.n=4", "aggregator", ["4 collaborators", "2, 3, 5, 7, 10"]),
             ("collaboration.n=30", "collaboration", ["30", "25"]),
             ("simulator.step=1", "simulator.step", ["unknown option"]),

@@ -15,6 +15,7 @@ import pluggy
 from evoframe.contract import (
     Aggregator,
     CollaborationStrategy,
+    Credit,
     Encoder,
     Evolver,
     Executor,
@@ -70,8 +71,8 @@ def evoframe_strategies() -> Mapping[str, type[CollaborationStrategy]]:  # type:
 
 
 @hookspec
-def evoframe_aggregators() -> Mapping[str, type[Aggregator]]:  # type: ignore[empty-body]
-    """Offer fitness aggregators.
+def evoframe_aggregators() -> Mapping[str, type[Aggregator | Credit]]:  # type: ignore[empty-body]
+    """Offer fitness aggregators: of the scores of an individual, or of all meetings of a turn.
 
     Returns:
         Name in configuration files -> frozen attrs class, whose fields are the options.

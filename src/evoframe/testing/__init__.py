@@ -27,6 +27,7 @@ pytest.register_assert_rewrite(
         for module in (
             "aggregators",
             "components",
+            "credits",
             "encoders",
             "evolvers",
             "executors",
@@ -39,6 +40,7 @@ pytest.register_assert_rewrite(
 )
 
 from evoframe.testing.aggregators import AggregatorContract  # noqa: E402
+from evoframe.testing.credits import CreditContract  # noqa: E402
 from evoframe.testing.encoders import EncoderContract  # noqa: E402
 from evoframe.testing.evolvers import EvolverContract  # noqa: E402
 from evoframe.testing.executors import ExecutorContract  # noqa: E402
@@ -49,6 +51,7 @@ from evoframe.testing.strategies import CollaborationStrategyContract  # noqa: E
 __all__ = [
     "AggregatorContract",
     "CollaborationStrategyContract",
+    "CreditContract",
     "EncoderContract",
     "EvolverContract",
     "ExecutorContract",
