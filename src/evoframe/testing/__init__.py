@@ -28,12 +28,14 @@ pytest.register_assert_rewrite(
             "aggregators",
             "components",
             "encoders",
+            "encounters",
             "evolvers",
             "executors",
             "laws",
             "objectives",
             "simulators",
             "strategies",
+            "strategy_runs",
         )
     )
 )
