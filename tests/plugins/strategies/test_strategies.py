@@ -4,6 +4,7 @@ from typing import Any, get_args, get_type_hints
 
 import attrs
 import pytest
+from collaborators import parts
 
 from evoframe import ConfigurationError, Source, load_config
 from evoframe.testing import CollaborationStrategyContract
@@ -32,14 +33,9 @@ from evoframe_strategies.nesting import built_in
 STRATEGIES = evoframe_strategies()
 
 
-def parts(*components: Any) -> tuple[Any, ...]:
-    """Return strategies as parts of others, with their names in the configuration."""
-    names = {class_: name for name, class_ in STRATEGIES.items()}
-    return tuple(built_in(names[type(component)], component) for component in components)
-
-
 def scheduled(component: Any, n: tuple[int, ...], since: tuple[int, ...]) -> Scheduled:
-    return Scheduled(*parts(component), n=n, since=since)
+    [strategy] = parts(component)
+    return Scheduled(strategy, n=n, since=since)
 
 
 class TestFittest(CollaborationStrategyContract):
