@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Literal
 
 import attrs
 import numpy as np
@@ -85,7 +84,7 @@ class Neighbourhood(ChooseN):
             population allows (25: 5 x 5, 24: 4 x 6, 23: 1 x 23), with steps along rows and columns.
     """
 
-    shape: Literal["ring", "torus"] = attrs.field(default="ring", validator=validators.in_(["ring", "torus"]))
+    shape: str = attrs.field(default="ring", validator=validators.in_(("ring", "torus")))
 
     def select(self, members: Sequence[Member], rng: np.random.Generator) -> Indices:  # noqa: ARG002
         """Return the indices of the *members* that the individual in the first cell meets."""
