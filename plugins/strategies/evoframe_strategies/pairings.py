@@ -70,7 +70,8 @@ class Neighbourhood(ChooseN):
     Each population lives in the cells of the same shape, which has no borders; the index of an individual in
     its population is its cell. An individual meets the member in its own cell first, then the nearest ones;
     at equal distance, those that follow in the order of the cells. If the populations have different sizes,
-    cells are those of the other population, and counted on from its first cell after its last.
+    cells are those of the other population, and counted on from its first cell after its last. As a later
+    part of ``sum``, the members that earlier parts left are the cells.
 
     The evolver decides which offspring are in which cell. Offspring stay near their parents, as in the
     sources, only if it keeps places. Sources: Hillis 1990, "Co-evolving parasites improve simulated evolution

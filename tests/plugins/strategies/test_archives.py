@@ -67,7 +67,7 @@ class TestHallOfFame:
     def test_keeps_a_champion_of_several_generations_once_and_as_the_latest(self) -> None:
         first, second, now = generations(3)
         returned = [attrs.evolve(first[2], age=2), *second[1:]]
-        run = after(HallOfFame(n=2, capacity=2), first, second, returned)
+        run = after(HallOfFame(n=2, capacity=3), first, second, returned)
         assert [one["member"]["id"] for one in run.state()["champions"]] == [12, 2]
         assert set(rows(run, now)[0]) == {"2", "12"}
 
@@ -123,6 +123,9 @@ class TestPrevious:
         [first] = generations(1)
         older = [attrs.evolve(member, age=1, fitness=-(member.fitness or 0.0)) for member in first]
         assert rows(after(Previous(n=1), first, older), older) == [[2]]  # the fittest in `first`
+
+    def test_is_a_single_choice_of_the_fittest_members(self) -> None:
+        assert chosen(Previous(n=2), population(0.1, 0.3, 0.2)) == [1, 2]
 
     def test_has_the_fitness_of_that_generation(self) -> None:
         first, second = generations(2)

@@ -99,6 +99,16 @@ def test_the_archive_leaves_a_place_for_the_fittest() -> None:
     others = population(0.1, 0.2, 0.9)
     run = new_run(Informative(n=2))
     turn(run, others, [[3.0, 1.0, 0.0], [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]])
+    assert archive_of(run) == [100]
+    assert rows(run, others) == [[100, 98]]
+
+
+def test_an_archive_of_more_individuals_is_shortened() -> None:
+    others = population(0.1, 0.2, 0.9)
+    larger, run = new_run(Informative(n=4)), new_run(Informative(n=2))
+    turn(larger, others, [[3.0, 1.0, 0.0], [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]])
+    assert archive_of(larger) == [100, 99]
+    run.restore(larger.state())
     assert rows(run, others) == [[100, 98]]
 
 

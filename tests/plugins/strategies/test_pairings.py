@@ -33,8 +33,10 @@ def test_all_members_take_part_equally_often(
     members: list[Member], n_judged: int, seed: int, data: st.DataObject
 ) -> None:
     n = data.draw(st.integers(1, len(members)))
-    counts = shares(shuffled(n, n_judged, members, seed), [*range(len(members))])
+    rows = shuffled(n, n_judged, members, seed)
+    counts = shares(rows, [*range(len(members))])
     assert max(counts) - min(counts) <= 1
+    assert all(len(set(row)) == n for row in rows)
 
 
 @given(members_of(), st.integers(1, 15), SEEDS, st.data())
@@ -128,6 +130,10 @@ def test_cells_are_those_of_the_index_and_not_of_the_place_in_a_call() -> None:
     members = population(*range(6))
     ring = Neighbourhood(n=2)
     assert nearest(ring, members, 4, 1) == nearest(ring, members, 4) + nearest(ring, members, 1)
+
+
+def test_a_single_choice_is_that_of_the_first_cell() -> None:
+    assert chosen(Neighbourhood(n=3), population(*range(6))) == [0, 1, 5]
 
 
 def test_larger_populations_go_around_again() -> None:

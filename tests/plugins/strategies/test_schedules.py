@@ -3,7 +3,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from collaborators import SEEDS, judged, members_of, new_run, parts, population, rows, turn
+from collaborators import SEEDS, chosen, judged, members_of, new_run, parts, population, rows, turn
 from hypothesis import given, strategies as st
 
 from evoframe import ConfigurationError, Member, load_config
@@ -55,6 +55,10 @@ def test_stages_begin_after_as_many_turns() -> None:
     assert counts(new_run(scheduled(Fittest(), (0, 5), (3, 2), (4, 1))), 6) == [5, 5, 5, 2, 1, 1]
 
 
+def test_a_single_choice_is_that_of_the_first_turn() -> None:
+    assert chosen(scheduled(Fittest(), (0, 3), (1, 2)), MEMBERS) == [7, 6, 5]
+
+
 def test_numbers_of_collaborators_are_those_of_the_strategy() -> None:
     assert counts(new_run(scheduled(BestAndWorst(), (0, 3), (1, 1))), 2) == [6, 2]
 
@@ -64,6 +68,16 @@ def test_turns_without_a_choice_do_not_count() -> None:
     for index in range(5):
         turn(run, MEMBERS, index=index)
     assert counts(run, 2) == [3, 2]
+
+
+def test_turns_of_the_other_population_do_not_count() -> None:
+    run = new_run(scheduled(Random(), (0, 3), (2, 2)))
+    found = []
+    for index in range(3):
+        found.append(len(rows(run, MEMBERS)[0]))
+        turn(run, MEMBERS, index=2 * index)
+        turn(run, MEMBERS, index=2 * index + 1)
+    assert found == [3, 3, 2]
 
 
 def test_several_choices_in_a_turn_are_one_turn() -> None:
