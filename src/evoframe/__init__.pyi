@@ -5,7 +5,7 @@ from .analysis.api import load_study as load_study, report as report
 from .analysis.statistics import Correction as Correction
 from .config.layers import Layer as Layer
 from .config.resolve import load_config as load_config
-from .contract.choosing import started as started
+from .contract.choosing import sizes_of as sizes_of, started as started
 from .contract.config import (
     ADDED_LATER as ADDED_LATER,
     Chosen as Chosen,

@@ -15,13 +15,14 @@ from hypothesis import given, strategies as st
 from modules import plugin
 
 import evoframe
-from evoframe import ConfigurationError, RunConfig
+from evoframe import ConfigurationError, RunConfig, StructureError
 from evoframe.config.layers import layers_in, preset_names
-from evoframe.config.resolve import load_config, resolve_layers
+from evoframe.config.resolve import load_config, resolve_component, resolve_layers
 from evoframe.contract.config import Source
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 from evoframe_evolvers import Neat
+from evoframe_strategies import Sum, Worst
 
 Load = Callable[..., RunConfig]
 
@@ -285,3 +286,26 @@ def test_a_run_of_a_local_plugin_names_the_option_that_loads_it(installed: Plugi
         resolve_layers(layers_in(tables, "config.toml"), "quick", installed)
     [hint] = caught.value.__notes__
     assert "-p PATH/mine.py" in hint
+
+
+class TestComponentsOnTheirOwn:
+    """``resolve_component``, with which contracts read the options of a component."""
+
+    def test_components_among_the_options_are_chosen(self) -> None:
+        table = {"parts": ["random", {"name": "sum", "parts": [{"name": "worst", "n": 3}]}]}
+        combined = resolve_component(table, Sum, ("component",))
+        assert [part.name for part in combined.parts] == ["random", "sum"]
+        [inner] = combined.parts[1].component.parts  # type: ignore[attr-defined]
+        assert inner.component == Worst(n=3)
+        assert inner.source.entry_point == "strategies"
+
+    def test_all_faults_are_reported_with_their_paths(self) -> None:
+        table = {"parts": [{"name": "random", "n": 0}, "nobody"]}
+        with pytest.raises(StructureError) as refused:
+            resolve_component(table, Sum, ("component",))
+        paths = [".".join(fault.path) for fault in refused.value.faults]
+        assert paths == ["component.parts[0].n", "component.parts[1]"]
+
+    def test_plugins_are_loaded_only_for_them(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("evoframe.config.resolve.discover", lambda: pytest.fail("loaded plugins"))
+        assert resolve_component({"n": 4}, Worst, ("component",)) == Worst(n=4)

@@ -35,7 +35,7 @@ from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import found
 from evoframe.registry import KINDS, Offer, Plugins, discover, kind_of
 
-__all__ = ["load_config", "named_simulator", "resolve_layers", "resolve_simulator"]
+__all__ = ["load_config", "named_simulator", "resolve_component", "resolve_layers", "resolve_simulator"]
 
 C = TypeVar("C")
 _RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
@@ -138,6 +138,22 @@ def resolve_simulator(layers: Layers, plugins: Plugins) -> Chosen[Simulator] | N
     return reading.chosen(usable, "simulator", tree.get("simulator"), ("simulator",))
 
 
+def resolve_component(options: Tree, class_: type[C], path: tuple[str, ...]) -> C:
+    """Return a component with options as a configuration contains them.
+
+    Components among the options are those of the installed plugins, which are loaded only if there are any.
+
+    Raises:
+        StructureError: The options are invalid; contains all faults, their paths beginning with *path*.
+    """
+    reading = _Reading({})
+    plugins = discover() if any(_nested_options(class_)) else Plugins()
+    component = reading.component(plugins, class_, options, path)
+    if component is None:
+        raise StructureError(reading.faults)
+    return component
+
+
 def _joined(faults: list[Fault], layers: Layers) -> ConfigurationError:
     errors = [
         ConfigurationError(
@@ -220,14 +236,18 @@ class _Reading:
         except ConfigurationError as error:
             self.faults.append(Fault(path, str(error)))
             return None
-        faults = len(self.faults)
-        options = self._with_nested(plugins, offer.component, options, path)
-        component = self._structured(options, offer.component, path) if len(self.faults) == faults else None
+        component = self.component(plugins, offer.component, options, path)
         if component is None:
             return None
         violations = [Fault(path, message) for message in _violations(offer, component)]
         self.faults += violations
         return None if violations else Chosen(table["name"], component, offer.source)
+
+    def component(self, plugins: Plugins, class_: type[C], options: Tree, path: tuple[str, ...]) -> C | None:
+        """Return a component with these options, or ``None`` if there are faults."""
+        faults = len(self.faults)
+        complete = self._with_nested(plugins, class_, options, path)
+        return self._structured(complete, class_, path) if len(self.faults) == faults else None
 
     def _with_nested(self, plugins: Plugins, class_: type[Any], options: Tree, path: tuple[str, ...]) -> Tree:
         """Return the options of a component with those that are components themselves chosen."""

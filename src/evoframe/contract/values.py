@@ -249,10 +249,12 @@ class Judged:
         member: The individual; its fitness is ``None`` if it is new.
         collaborators: Ids of the collaborators from the other population in its last evaluation; empty if it
             is new.
+        index: Its index in its population, which is its place if populations have a shape.
     """
 
     member: Member
     collaborators: tuple[int, ...] = ()
+    index: int = attrs.field(kw_only=True)
 
 
 @attrs.frozen(eq=False)

@@ -124,7 +124,10 @@ class Collaboration:
 
     def _judged(self, other: Population) -> list[Judged]:
         met = self._met.get(other.name, {})
-        return [Judged(member, met.get(member.id, ())) for member in self.own.members]
+        return [
+            Judged(member, met.get(member.id, ()), index=index)
+            for index, member in enumerate(self.own.members)
+        ]
 
     def _combined(self, columns: Sequence[Sequence[int]]) -> list[tuple[int, ...]]:
         counts = {len(column) for column in columns}

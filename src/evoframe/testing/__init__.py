@@ -29,12 +29,14 @@ pytest.register_assert_rewrite(
             "components",
             "credits",
             "encoders",
+            "encounters",
             "evolvers",
             "executors",
             "laws",
             "objectives",
             "simulators",
             "strategies",
+            "strategy_runs",
         )
     )
 )

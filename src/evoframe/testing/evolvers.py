@@ -17,7 +17,15 @@ from numpy.typing import NDArray
 
 from evoframe.contract import Evolver, EvolverRun, NetworkGraph, SupportsGraph
 from evoframe.testing.components import ComponentContract
-from evoframe.testing.laws import for_all, global_random_state_untouched, refusal, same_bits
+from evoframe.testing.laws import (
+    JUNK,
+    damaged_at,
+    for_all,
+    global_random_state_untouched,
+    places_in,
+    refusal,
+    same_bits,
+)
 
 __all__ = ["EvolverContract"]
 
@@ -249,12 +257,12 @@ class EvolverContract(ComponentContract[Evolver]):
 
         def law(text: str, junk: Any, data: st.DataObject) -> None:
             genome = json.loads(text)
-            damaged = _damaged(genome, data.draw(st.sampled_from(list(_places(genome)))), junk)
+            damaged = damaged_at(data.draw(st.sampled_from(list(places_in(genome)))), genome, junk)
             with contextlib.suppress(ValueError):
                 self._assert_sound(self._graph(damaged))
 
         if texts:
-            for_all(law, text=st.sampled_from(texts), junk=_JUNK, data=st.data())
+            for_all(law, text=st.sampled_from(texts), junk=JUNK, data=st.data())
 
     def start(self, seed: int = 0) -> EvolverRun:
         """Start a run with a new generator."""
@@ -347,34 +355,6 @@ class EvolverContract(ComponentContract[Evolver]):
             run.tell(spoiled, measures)
         history = [self._tell(run, genomes), *self._history(run, self.turns - 1)]
         assert history == self._history(self.start()), "a refused tell() must not change the run"
-
-
-_MISSING: Any = object()
-_JUNK: st.SearchStrategy[Any] = st.one_of(
-    st.sampled_from([None, True, -1, 0, 2, 10**400, math.nan, math.inf, "", "sin", [], {}, [[]], [{}]]),
-    st.floats(),
-    st.just(_MISSING),
-)
-
-
-def _places(value: Any) -> Iterator[tuple[Any, ...]]:
-    """Return the paths of *value* itself and of all JSON values within it."""
-    yield ()
-    if isinstance(value, dict | list):
-        for key in value if isinstance(value, dict) else range(len(value)):
-            yield from ((key, *rest) for rest in _places(value[key]))
-
-
-def _damaged(value: Any, place: tuple[Any, ...], junk: Any) -> Any:
-    """Return *value* with *junk* at *place*, or without that place if *junk* is :data:`_MISSING`."""
-    if not place:
-        return None if junk is _MISSING else junk
-    parent = functools.reduce(lambda within, key: within[key], place[:-1], value)
-    if junk is _MISSING:
-        del parent[place[-1]]
-    else:
-        parent[place[-1]] = junk
-    return value
 
 
 def _with_last(value: float, fitness: Floats) -> Floats:
