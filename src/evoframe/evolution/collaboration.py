@@ -78,7 +78,7 @@ class Collaboration:
         self._note_collaborators(seen)
         for other in self.others:
             with blaming(self.key):
-                self._runs[other.name].observe(seen, other.dump)
+                self._runs[other.name].observe(seen, other.archivable)
 
     def state(self) -> dict[str, Any] | None:
         """Return everything needed to continue, as JSON values; ``None`` for a strategy without a memory."""

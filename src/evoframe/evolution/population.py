@@ -141,7 +141,7 @@ class Population:
     def _loaded(self, archived: Archived) -> Any:
         with blaming(self._evolver, f"{self.name} {archived.member.id}"):
             if not isinstance(self.evolver, SupportsLoad):
-                raise TypeError("cannot load the genome of an archived individual; it has no method 'load'")
+                raise TypeError("cannot load the genome of an archived individual: it has no method 'load'")
             return self.evolver.load(archived.genome)
 
     def _genome(self, position: int) -> Any:
@@ -205,6 +205,19 @@ class Population:
             genome = self.evolver.dump(self._genome(position))
             json_text({"genomes": {self.name: genome}})  # fails here, so that the evolver is named
             return genome
+
+    def archivable(self, position: int) -> Any:
+        """Return the genome at *position* for an archive.
+
+        Raises:
+            ComponentError: The evolver could not load it again.
+        """
+        if not isinstance(self.evolver, SupportsLoad):
+            problem = (
+                "cannot load genomes (it has no method 'load'), which an archive of collaborators requires"
+            )
+            raise ComponentError(self._evolver, problem)
+        return self.dump(position)
 
     def decode(self, position: int, design: Design) -> Design:
         """Return *design* with the roles that the genome at *position* provides.
