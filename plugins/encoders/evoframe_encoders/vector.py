@@ -21,8 +21,8 @@ _POINT.setflags(write=False)  # so that the core evaluates a network only once f
 class Vector:
     """A vector of numbers from 0 to 1: the outputs of a network at a single point without coordinates.
 
-    A network has no inputs and one output for each number. Outputs are clipped, not squashed: with the evolver
-    ``genetic``, each number is a gene (a direct encoding), and 0 and 1 can be reached.
+    A network has no inputs, and an output for each number. Outputs are clipped, not squashed: with the
+    evolver ``genetic``, each number is a gene (a direct encoding), and 0 and 1 can be reached.
 
     Attributes:
         role: Role of the vector in a design.

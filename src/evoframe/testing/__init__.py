@@ -29,9 +29,11 @@ pytest.register_assert_rewrite(
             "components",
             "encoders",
             "evolvers",
+            "evolving",
             "executors",
             "laws",
             "objectives",
+            "seeding",
             "simulators",
             "strategies",
         )
