@@ -461,7 +461,7 @@ def test_mutants_resemble_their_seeds() -> None:
 def test_a_genome_of_other_networks_is_not_loaded() -> None:
     other = Neat().start(4, 1, 5, np.random.default_rng(0))
     [genome, *_] = map(other.dump, other.ask())
-    with pytest.raises(ValueError, match=r"input|output"):
+    with pytest.raises(ValueError, match="does not exist: -4"):
         start().load(genome)
 
 
