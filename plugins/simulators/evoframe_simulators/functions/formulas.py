@@ -61,8 +61,8 @@ _bounded = validators.and_(validators.ge(-_LARGEST), validators.le(_LARGEST))
 def _refuse_unless(accepted: bool, expected: str, variables: int) -> None:
     if not accepted:
         raise ValueError(
-            f"expected {expected} variables, found {variables}: the number of simulator.roles times "
-            "simulator.dimension"
+            f"expected {expected}, found {variables} (the number of simulator.roles times "
+            "simulator.dimension)"
         )
 
 
@@ -114,7 +114,9 @@ class MaximumOfQuadratics:
         """Require one number for each variable in the place of every peak."""
         for peak in self.peaks:
             n = len(peak.place)
-            _refuse_unless(variables == n, f"{n} (the numbers in a place of simulator.mtq.peaks)", variables)
+            _refuse_unless(
+                variables == n, f"{n} variables (the numbers in a place of simulator.mtq.peaks)", variables
+            )
 
     def value(self, point: Sequence[float]) -> float:
         """Return the largest value of a quadratic."""
@@ -135,7 +137,7 @@ class OneRidge:
 
     def check(self, variables: int) -> None:
         """Require at least two variables."""
-        _refuse_unless(variables >= 2, "at least 2", variables)
+        _refuse_unless(variables >= 2, "at least 2 variables", variables)
 
     def value(self, point: Sequence[float]) -> float:
         """Return the value at *point*."""
@@ -159,7 +161,7 @@ class Griewangk:
 
     def check(self, variables: int) -> None:
         """Require at least one variable."""
-        _refuse_unless(variables >= 1, "at least 1", variables)
+        _refuse_unless(variables >= 1, "at least 1 variable", variables)
 
     def value(self, point: Sequence[float]) -> float:
         """Return the value at *point*."""
@@ -181,7 +183,7 @@ class Booth:
 
     def check(self, variables: int) -> None:
         """Require two variables."""
-        _refuse_unless(variables == 2, "2", variables)
+        _refuse_unless(variables == 2, "2 variables", variables)
 
     def value(self, point: Sequence[float]) -> float:
         """Return the value at *point*."""
@@ -206,7 +208,7 @@ class Rosenbrock:
 
     def check(self, variables: int) -> None:
         """Require at least two variables."""
-        _refuse_unless(variables >= 2, "at least 2", variables)
+        _refuse_unless(variables >= 2, "at least 2 variables", variables)
 
     def value(self, point: Sequence[float]) -> float:
         """Return the value at *point*."""
@@ -233,7 +235,7 @@ class Rastrigin:
 
     def check(self, variables: int) -> None:
         """Require at least one variable."""
-        _refuse_unless(variables >= 1, "at least 1", variables)
+        _refuse_unless(variables >= 1, "at least 1 variable", variables)
 
     def value(self, point: Sequence[float]) -> float:
         """Return the value at *point*."""

@@ -153,7 +153,7 @@ def _check_part(role: str, part: NDArray[Any] | None, dimension: int) -> None:
     if part.dtype != np.float64 or part.shape != (dimension,):
         raise InputError(
             f"role '{role}': expected float64[{dimension}], found {part.dtype}{list(part.shape)}; "
-            "set simulator.dimension to the length"
+            "simulator.dimension must be the length of the encoder's vector"
         )
     if not ((part >= 0.0) & (part <= 1.0)).all():
         raise InputError(f"role '{role}': expected numbers from 0 to 1, found {part.tolist()}")

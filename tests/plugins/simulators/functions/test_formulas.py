@@ -168,7 +168,7 @@ def test_other_numbers_of_variables_are_refused(function: Function, accepted: se
         if variables in accepted:
             function.check(variables)
         else:
-            with pytest.raises(ValueError, match=f"found {variables}: "):
+            with pytest.raises(ValueError, match=rf"found {variables} \("):
                 function.check(variables)
 
 
