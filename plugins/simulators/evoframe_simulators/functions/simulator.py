@@ -155,7 +155,7 @@ def _check_part(role: str, part: NDArray[Any] | None, dimension: int) -> None:
             f"role '{role}': expected float64[{dimension}], found {part.dtype}{list(part.shape)}; "
             "simulator.dimension must be the length of the encoder's vector"
         )
-    if not ((part >= 0.0) & (part <= 1.0)).all():
+    if not (part.min() >= 0.0 and part.max() <= 1.0):  # also if one is NaN
         raise InputError(f"role '{role}': expected numbers from 0 to 1, found {part.tolist()}")
 
 
