@@ -22,7 +22,7 @@ from evoframe import Aggregator, Coevolution, Plugins, RunConfig, Scores, Source
 RUNS = 30
 SIGNIFICANT = 0.01
 
-# With the published width of the narrow peak (a spread of 1/32), runs end on the broad one whatever the credit.
+# With the published width of the narrow peak (a spread of 1/32), runs end on the broad one with any credit.
 WIDER_MTQ = """simulator.mtq.peaks = [
     {height = 50.0, place = [0.75, 0.75], spread = 1.6},
     {height = 150.0, place = [0.25, 0.25], spread = 0.3},
