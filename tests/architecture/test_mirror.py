@@ -25,6 +25,7 @@ UNTESTED: Mapping[str, str] = {
     "src/evoframe/__main__.py": "starts the program; covered by tests of the command line",
     "src/evoframe/_version.py": "contains only a number",
     "src/evoframe/testing/encounters.py": "simulated turns; covered by tests of the contract of strategies",
+    "src/evoframe/testing/evolving.py": "shared by the laws of evolvers; covered by their tests",
     "src/evoframe/testing/laws.py": "shared by contracts; covered by tests of all contracts",
 }
 """Modules without their own tests -> reason."""

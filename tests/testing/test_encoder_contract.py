@@ -56,6 +56,18 @@ class TestNamedStripe(OnABody):
     component = Named()
 
 
+class OneColor(Stripe):
+    inputs = 0
+    input_names: ClassVar[Any] = ()
+
+    def colors(self, network: Network) -> NDArray[Any]:
+        return np.clip(network(np.empty((1, 0)))[:, 0], -1, 1)
+
+
+class TestAnEncoderWithoutInputs(OnABody):
+    component = OneColor()
+
+
 class OneNameTooMany(Named):
     input_names = ("u", "v", "w")
 
@@ -192,8 +204,12 @@ class InfinitePoints(Stripe):
         return np.clip(network(POINTS / np.zeros(1) if POINTS.all() else POINTS + np.inf)[:, 0], -1, 1)
 
 
-class NoInputs(Stripe):
-    inputs = 0
+class FewerThanNoInputs(Stripe):
+    inputs = -1
+
+
+class NoOutputs(Stripe):
+    outputs = 0
 
 
 @pytest.mark.parametrize(
@@ -202,7 +218,8 @@ class NoInputs(Stripe):
         (NoRole(), DECLARED),
         (ListOfRoles(), DECLARED),
         (RequiredAndProvided(), DECLARED),
-        (NoInputs(), "test_a_network_has_inputs_and_outputs"),
+        (FewerThanNoInputs(), "test_a_network_has_inputs_and_outputs"),
+        (NoOutputs(), "test_a_network_has_inputs_and_outputs"),
         (OneNameTooMany(), NAMES),
         (ListOfNames(), NAMES),
         (OneNameForAll(), NAMES),

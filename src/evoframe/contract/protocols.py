@@ -179,7 +179,7 @@ class Encoder(Protocol):
 
     @property
     def inputs(self) -> int:
-        """Number of inputs that a network needs."""
+        """Number of inputs that a network needs; 0 if it is evaluated at points without coordinates."""
 
     @property
     def outputs(self) -> int:
