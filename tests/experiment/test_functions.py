@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar
+from collections.abc import Callable, Sequence
+from typing import Any
 
-import attrs
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.stats import mannwhitneyu
 
 import evoframe
-from evoframe import Aggregator, Coevolution, Plugins, RunConfig, Scores, Source, hookimpl
+from evoframe import Coevolution, RunConfig
 
 RUNS = 30
 SIGNIFICANT = 0.01
@@ -29,38 +28,10 @@ WIDER_MTQ = """simulator.mtq.peaks = [
 ]"""
 
 
-@attrs.frozen
-class Highest:
-    """The highest score: optimistic credit."""
-
-    domain: ClassVar[tuple[float, float]] = (-1e100, 1e100)
-
-    def check(self, n: int) -> None:
-        """Accept any number."""
-
-    def aggregate(self, scores: Scores) -> float:
-        return float(scores.max())
-
-
-class Optimism:
-    """A plugin with optimistic credit."""
-
-    @hookimpl
-    def evoframe_aggregators(self) -> Mapping[str, type[Aggregator]]:
-        return {"highest": Highest}
-
-
-@pytest.fixture(scope="module")
-def configured() -> Callable[..., RunConfig]:
-    """Return a function that returns the preset with other settings."""
-    plugins: Plugins = evoframe.discover()
-    plugins.add(Optimism(), Source("tests", "0", "optimism"))
-
-    def load(seed: int, *settings: str) -> RunConfig:
-        overrides = [f"run.seed={seed}", "populations.x.size=20", "populations.y.size=20", *settings]
-        return evoframe.load_config("functions", overrides=overrides, plugins=plugins)
-
-    return load
+def configured(seed: int, *settings: str) -> RunConfig:
+    """Return the preset with other settings."""
+    overrides = [f"run.seed={seed}", "populations.x.size=20", "populations.y.size=20", *settings]
+    return evoframe.load_config("functions", overrides=overrides)
 
 
 def finished(config: RunConfig) -> Coevolution:
@@ -83,9 +54,9 @@ def distance(place: Sequence[float], loop: Coevolution) -> float:
     return math.dist(place, fittest)
 
 
-def samples(measure: Callable[[Coevolution], float], load: Any, *settings: str) -> list[float]:
+def samples(measure: Callable[[Coevolution], float], *settings: str) -> list[float]:
     """Return a measure of the final state of each of the runs."""
-    return [measure(finished(load(seed, *settings))) for seed in range(RUNS)]
+    return [measure(finished(configured(seed, *settings))) for seed in range(RUNS)]
 
 
 def p_value(smaller: Sequence[float], larger: Sequence[float]) -> float:
@@ -102,27 +73,24 @@ def p_value(smaller: Sequence[float], larger: Sequence[float]) -> float:
     ids=["one-ridge", "mtq"],
 )
 def test_optimistic_credit_comes_closer_to_the_optimum_than_the_mean(
-    configured: Any, function: str, optimum: Sequence[float]
+    function: str, optimum: Sequence[float]
 ) -> None:
     """Panait, Luke and Wiegand 2006: averaging scores leads to robust pairs instead of the best ones."""
     settings = function, "run.generations=10", "collaboration=random", "collaboration.n=10"
     measure = functools.partial(distance, optimum)
-    optimistic, mean = (
-        samples(measure, configured, *settings, f"aggregator={name}") for name in ("highest", "am")
-    )
+    optimistic, mean = (samples(measure, *settings, f"aggregator={name}") for name in ("max", "am"))
     assert p_value(optimistic, mean) < SIGNIFICANT
 
 
 SEPARABLE = "simulator.function=rastrigin", "simulator.rastrigin.amplitude=0.0", "collaboration=fittest"
 
 
-def test_on_a_separable_function_one_best_collaborator_is_better_at_equal_cost(configured: Any) -> None:
+def test_on_a_separable_function_one_best_collaborator_is_better_at_equal_cost() -> None:
     """Wiegand, Liles and De Jong 2001: without interaction, more collaborators only cost evaluations."""
     budgets = [(1, 20), (5, 4)]  # collaborators, generations
     one, five = (
         samples(
             lambda loop: -(loop.fittest_pair().score or 0.0),
-            configured,
             *SEPARABLE,
             f"collaboration.n={n}",
             f"run.generations={generations}",
@@ -135,7 +103,7 @@ def test_on_a_separable_function_one_best_collaborator_is_better_at_equal_cost(c
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("function", "same"), [("rastrigin", True), ("rosenbrock", False)])
 def test_only_on_a_separable_function_more_collaborators_change_nothing(
-    configured: Any, seed: int, function: str, same: bool
+    seed: int, function: str, same: bool
 ) -> None:
     """The scores of all individuals change by the same amount, and selection depends on ranks."""
     settings = f"simulator.function={function}", "run.generations=10"
