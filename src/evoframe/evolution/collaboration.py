@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import attrs
@@ -23,7 +23,9 @@ from evoframe.contract import (
 )
 from evoframe.documents import structure
 from evoframe.errors import ComponentError
+from evoframe.evolution.decoding import Meeting
 from evoframe.evolution.population import Population
+from evoframe.files import json_text
 
 __all__ = ["Collaboration"]
 
@@ -73,9 +75,22 @@ class Collaboration:
         teams = {row: self._combined(row) for row in set(rows)}  # most are equal
         return [teams[row] for row in rows]
 
+    def note_collaborators(self, meetings: Iterable[Meeting], populations: Sequence[Population]) -> None:
+        """Remember whom the individuals met in the meetings in which they were evaluated."""
+        if not self.observes:
+            return
+        own = next(column for column, each in enumerate(populations) if each is self.own)
+        for column, other in enumerate(populations):
+            if column == own:
+                continue
+            met: dict[int, dict[int, None]] = {}
+            for meeting in meetings:
+                collaborators = met.setdefault(self.own.members[meeting[own]].id, {})
+                collaborators[other.present[meeting[column]].id] = None
+            self._met[other.name] = {key: tuple(collaborators) for key, collaborators in met.items()}
+
     def observe(self, seen: ScoredMeetings) -> None:
-        """Remember whom the individuals met, and show the turn to the strategy."""
-        self._note_collaborators(seen)
+        """Show a turn to the strategy."""
         for other in self.others:
             with blaming(self.key):
                 self._runs[other.name].observe(seen, other.dump)
@@ -84,8 +99,9 @@ class Collaboration:
         """Return everything needed to continue, as JSON values; ``None`` for a strategy without a memory."""
         if not self.observes:
             return None
-        with blaming(self.key):
+        with blaming(self.key, f"population {self.own.name}"):
             runs = {name: run.state() for name, run in self._runs.items()}
+            json_text(runs)  # fails here, so that the strategy is named
         met = {
             name: [[key, list(collaborators)] for key, collaborators in met.items()]
             for name, met in self._met.items()
@@ -132,17 +148,6 @@ class Collaboration:
             listed = ", ".join(map(str, sorted(counts)))
             raise ComponentError(self.key, f"chose different numbers from other populations: {listed}")
         return list(zip(*columns, strict=True))
-
-    def _note_collaborators(self, seen: ScoredMeetings) -> None:
-        own = seen.populations.index(self.own.name)
-        for other in self.others:
-            column = seen.populations.index(other.name)
-            ids = [member.id for member in seen.members[column]]
-            self._met[other.name] = {
-                member.id: tuple(dict.fromkeys(ids[i] for i in seen.meetings[rows, column]))
-                for member, rows in zip(self.own.members, seen.of(own), strict=True)
-                if len(rows)
-            }
 
 
 def _refuse_invalid(key: str, row: Sequence[Choice], sizes: Sequence[int], other: Population) -> None:

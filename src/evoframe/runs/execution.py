@@ -13,13 +13,13 @@ import attrs
 from evoframe.contract import RunConfig, SupportsVariants, Turn, unit_of
 from evoframe.designs import verify_designs
 from evoframe.errors import ComponentError, RunError
-from evoframe.evolution import Coevolution
+from evoframe.evolution import Coevolution, assemble
 from evoframe.files import locked
 from evoframe.messages import cause_of, quantity
 from evoframe.record import Run, Store, Verification, keep_verification
 from evoframe.registry import Observers, Plugins
 
-__all__ = ["Execution", "completed", "verify_champion"]
+__all__ = ["Execution", "assembled", "completed", "verify_champion"]
 
 _log = logging.getLogger(__name__)
 
@@ -136,6 +136,19 @@ class _Saving:
         self._store.save(turn, self._state([report.population for report in turn.reports]))
         _log_turn(turn, self._unit)
         self._observers.tell("evoframe_turn_finished", turn=turn)
+
+
+def assembled(config: RunConfig) -> Coevolution:
+    """Return the loop of a configuration; an error of a component names it and its plugin.
+
+    Raises:
+        ConfigurationError: A component cannot start.
+        RunError: A component failed.
+    """
+    try:
+        return assemble(config)
+    except ComponentError as error:
+        raise completed(error, config, "") from error
 
 
 def completed(error: ComponentError, config: RunConfig, turn: str) -> ComponentError:

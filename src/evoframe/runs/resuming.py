@@ -9,7 +9,7 @@ from evoframe.config import Layer, layers_in, layers_of, resolve_layers
 from evoframe.contract import RunConfig, SupportsVariants
 from evoframe.documents import differences
 from evoframe.errors import ComponentError, ConfigurationError, InputError
-from evoframe.evolution import Coevolution, assemble
+from evoframe.evolution import Coevolution
 from evoframe.files import Lock, acquire_lock, is_leftover, parsed_json, released_on_error, remove
 from evoframe.record import (
     CHAINED,
@@ -21,7 +21,7 @@ from evoframe.record import (
     open_run,
 )
 from evoframe.registry import Plugins, discover
-from evoframe.runs.execution import Execution, completed, verify_champion
+from evoframe.runs.execution import Execution, assembled, completed, verify_champion
 from evoframe.runs.starting import open_store
 
 __all__ = [
@@ -136,7 +136,7 @@ def _reopen(
     changes = _changes(run, config, allowed=allowed)
     if run.begun:
         run.read_all()
-    coevolution = assemble(config)
+    coevolution = assembled(config)
     try:
         if run.begun:
             restore(coevolution, run, config)
