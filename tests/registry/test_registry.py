@@ -97,4 +97,4 @@ class TestRegistry:
 
     def test_blocked_distributions_are_left_out(self, toy_plugins: Plugins) -> None:
         assert toy_plugins.without(["toy-box"]).names("aggregator") == []
-        assert toy_plugins.without(["other"]).names("aggregator") == ["toy-mean"]
+        assert toy_plugins.without(["other"]).names("aggregator") == ["toy-mean", "toy-share"]
