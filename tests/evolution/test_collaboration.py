@@ -134,7 +134,7 @@ class TestCollaboratorsOfTheLastEvaluation:
     def test_are_those_that_were_chosen_for_it(
         self, toy_variant: Variant, monkeypatch: pytest.MonkeyPatch, name: str
     ) -> None:
-        chosen: dict[tuple[int, int], tuple[int, ...]] = {}
+        chosen: dict[tuple[int, int, int], tuple[int, ...]] = {}
         checked: list[bool] = []
         select = toy_capabilities.Loyal.select_each
         populations: dict[int, int] = {}
@@ -300,8 +300,11 @@ def test_an_error_of_a_strategy_with_a_memory_names_its_key(
     owner: Any = toy_capabilities.Archiving if method == "start" else toy_capabilities.ArchivingRun
     monkeypatch.setattr(owner, method, failing)
 
-    def act() -> object:
-        return assemble(config).restore(saved) if method == "restore" else list(assemble(config))
+    def act() -> None:
+        coevolution = assemble(config)
+        if method == "restore":
+            coevolution.restore(saved)
+        list(coevolution)
 
     with pytest.raises(ComponentError, match="ZeroDivisionError: a bug") as caught:
         act()

@@ -86,7 +86,7 @@ class TestAggregators:
         assert (caught.value.component, caught.value.concerns) == ("populations.a.aggregator", "a 1")
 
     def test_apply_to_measures_too(self) -> None:
-        scores = {
+        scores: Scores = {
             (row, column): Score(1.0, measures={"energy": float(10 * row + column)})
             for row in range(3)
             for column in range(2)

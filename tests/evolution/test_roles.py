@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import toy_capabilities
+import toys
 from toy_capabilities import Constant, Random
 
 from evoframe import ConfigurationError, Design, InputError, Record, RunConfig, Turn, assemble
@@ -111,13 +111,13 @@ class TestRuns:
         self, toy_variant: Variant, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         designs: list[Design] = []
-        simulate = toy_capabilities.toys.Product.simulate
+        simulate = toys.Product.simulate
 
         def noted(self: Any, given: Any, record: Record) -> Any:
             designs.extend(given)
             return simulate(self, given, record)
 
-        monkeypatch.setattr(toy_capabilities.toys.Product, "simulate", noted)
+        monkeypatch.setattr(toys.Product, "simulate", noted)
         for turn in assemble(toy_variant("roles in turns")):
             judged = turn.reports[0].population if turn.reports else "a"
             column = "ab".index(judged)

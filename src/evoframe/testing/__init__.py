@@ -32,6 +32,7 @@ pytest.register_assert_rewrite(
             "executors",
             "laws",
             "objectives",
+            "roles",
             "simulators",
             "strategies",
         )
@@ -43,6 +44,7 @@ from evoframe.testing.encoders import EncoderContract  # noqa: E402
 from evoframe.testing.evolvers import EvolverContract  # noqa: E402
 from evoframe.testing.executors import ExecutorContract  # noqa: E402
 from evoframe.testing.objectives import ObjectiveContract  # noqa: E402
+from evoframe.testing.roles import RoleProviderContract  # noqa: E402
 from evoframe.testing.simulators import SimulatorContract  # noqa: E402
 from evoframe.testing.strategies import CollaborationStrategyContract  # noqa: E402
 
@@ -53,5 +55,6 @@ __all__ = [
     "EvolverContract",
     "ExecutorContract",
     "ObjectiveContract",
+    "RoleProviderContract",
     "SimulatorContract",
 ]
