@@ -170,7 +170,7 @@ class TestCredit:
         with pytest.raises(ComponentError) as caught:
             fitness(Judge("populations.a.aggregator", Given(found)), scores_of(TABLE))
         assert f"shape {shape}, expected (3,)" in caught.value.problem
-        assert (caught.value.component, caught.value.concerns) == ("populations.a.aggregator", "a")
+        assert (caught.value.component, caught.value.concerns) == ("populations.a.aggregator", "population a")
 
     @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
     def test_that_is_not_finite_is_refused_with_the_individual(self, value: float) -> None:
@@ -183,7 +183,7 @@ class TestCredit:
     def test_that_is_not_an_array_of_numbers_is_refused(self, found: Any) -> None:
         with pytest.raises(ComponentError) as caught:
             fitness(Judge("aggregator", Given(found)), scores_of(TABLE))
-        assert (caught.value.component, caught.value.concerns) == ("aggregator", "a")
+        assert (caught.value.component, caught.value.concerns) == ("aggregator", "population a")
 
 
 class TestScoredMeetings:

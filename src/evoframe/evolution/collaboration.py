@@ -49,7 +49,7 @@ class Collaboration:
     _met: dict[str, dict[int, tuple[int, ...]]] = attrs.field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             self._runs = {
                 other.name: started(self.strategy, self.own.name, other.name) for other in self.others
             }
@@ -58,6 +58,11 @@ class Collaboration:
     def observes(self) -> bool:
         """Whether the strategy has a memory, or may ask whom individuals met."""
         return isinstance(self.strategy, SupportsMemory | SupportsEach)
+
+    @property
+    def _whose(self) -> str:
+        """The population for whose individuals it chooses, in errors: several can share a strategy."""
+        return f"population {self.own.name}"
 
     def teams(self) -> list[Sequence[tuple[int, ...]]]:
         """Return the teams of each individual: one position in each other population.
@@ -92,14 +97,14 @@ class Collaboration:
     def observe(self, seen: ScoredMeetings) -> None:
         """Show a turn to the strategy."""
         for other in self.others:
-            with blaming(self.key):
+            with blaming(self.key, self._whose):
                 self._runs[other.name].observe(seen, other.dump)
 
     def state(self) -> dict[str, Any] | None:
         """Return everything needed to continue, as JSON values; ``None`` for a strategy without a memory."""
         if not self.observes:
             return None
-        with blaming(self.key, f"population {self.own.name}"):
+        with blaming(self.key, self._whose):
             runs = {name: run.state() for name, run in self._runs.items()}
             json_text(runs)  # fails here, so that the strategy is named
         met = {
@@ -117,7 +122,7 @@ class Collaboration:
         """
         saved = structure(state, _Saved, ("collaboration", self.own.name))
         for name, run in self._runs.items():
-            with blaming(self.key):
+            with blaming(self.key, self._whose):
                 run.restore(saved.runs.get(name))
         self._met = {
             name: {int(key): tuple(map(int, ids)) for key, ids in met} for name, met in saved.met.items()
@@ -126,17 +131,26 @@ class Collaboration:
     def _positions(self, other: Population) -> list[tuple[int, ...]]:
         """Return the positions of the collaborators of each individual from another population."""
         members, judged = other.candidates, self._judged(other)
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             sizes = sizes_of(self.strategy, len(members))
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             rows = list(self._runs[other.name].choose(judged, members, self.own.rng))
         if len(rows) != len(judged):
-            raise ComponentError(self.key, f"chose for {len(rows)} individuals, expected {len(judged)}")
+            problem = f"chose for {len(rows)} individuals, expected {len(judged)}"
+            raise ComponentError(self.key, problem, self._whose)
         positions = []
         for row in rows:
-            _refuse_invalid(self.key, row, sizes, other)
+            self._refuse_invalid(row, sizes, other)
             positions.append(tuple(other.admit(choice) for choice in row))
         return positions
+
+    def _refuse_invalid(self, row: Sequence[Choice], sizes: Sequence[int], other: Population) -> None:
+        """Refuse collaborators that do not exist or are repeated, and another number than declared."""
+        ids = _ids(row, other.candidates) if isinstance(row, Sequence) else [None]
+        if None in ids or len(set(ids)) != len(ids) or len(ids) not in sizes:
+            expected = " or ".join(map(str, sizes))
+            there = f"the {len(other.candidates)} members of '{other.name}'"
+            raise ComponentError(self.key, f"chose {row}, expected {expected} of {there}", self._whose)
 
     def _judged(self, other: Population) -> list[Judged]:
         met = self._met.get(other.name, {})
@@ -146,18 +160,9 @@ class Collaboration:
         counts = {len(column) for column in columns}
         if len(counts) > 1:
             listed = ", ".join(map(str, sorted(counts)))
-            raise ComponentError(self.key, f"chose different numbers from other populations: {listed}")
+            problem = f"chose different numbers from other populations: {listed}"
+            raise ComponentError(self.key, problem, self._whose)
         return list(zip(*columns, strict=True))
-
-
-def _refuse_invalid(key: str, row: Sequence[Choice], sizes: Sequence[int], other: Population) -> None:
-    """Refuse collaborators that do not exist or are repeated, and another number than declared."""
-    ids = _ids(row, other.candidates) if isinstance(row, Sequence) else [None]
-    if None in ids or len(set(ids)) != len(ids) or len(ids) not in sizes:
-        expected = " or ".join(map(str, sizes))
-        raise ComponentError(
-            key, f"chose {row}, expected {expected} of the {len(other.candidates)} members of '{other.name}'"
-        )
 
 
 def _ids(row: Sequence[Choice], members: Sequence[Member]) -> list[int | None]:
