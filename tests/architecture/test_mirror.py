@@ -16,6 +16,7 @@ ELSEWHERE: Mapping[str, str] = {
         f"src/evoframe/testing/{kind}s.py": f"tests/testing/test_{kind}_contract.py"
         for kind in ("aggregator", "credit", "encoder", "evolver", "executor", "objective", "simulator")
     },
+    "src/evoframe/testing/roles.py": "tests/testing/test_role_contract.py",
     "src/evoframe/testing/strategies.py": "tests/testing/test_strategy_contract.py",
 }
 """Modules whose tests have another name: the contracts are tests, tested by violating them."""
