@@ -25,6 +25,8 @@ UNTESTED: Mapping[str, str] = {
     "src/evoframe/analysis/api.py": "forwards calls; covered by tests of studies and reports",
     "src/evoframe/__main__.py": "starts the program; covered by tests of the command line",
     "src/evoframe/_version.py": "contains only a number",
+    "src/evoframe/runs/blame.py": "names components in errors; covered by tests of misbehaving components",
+    "src/evoframe/runs/restoring.py": "covered by tests of resuming, of the doctor and of warm starts",
     "src/evoframe/testing/encounters.py": "simulated turns; covered by tests of the contract of strategies",
     "src/evoframe/testing/evolving.py": "shared by the laws of evolvers; covered by their tests",
     "src/evoframe/testing/laws.py": "shared by contracts; covered by tests of all contracts",
