@@ -13,6 +13,7 @@ import pytest
 import tomli_w
 from hypothesis import given, strategies as st
 from modules import plugin
+from toy_capabilities import VARIANTS
 
 import evoframe
 from evoframe import ConfigurationError, RunConfig, StructureError
@@ -244,6 +245,20 @@ def test_any_configuration_survives_a_round_trip(
     again = load_config(path, plugins=plugins)
     assert again == config
     assert tomli_w.dumps(again.tables()) == config.to_toml()
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_own_components_roles_and_nested_components_survive_a_round_trip(
+    toy_variant: Load, toy_plugins: Plugins, tmp_path: Path, name: str
+) -> None:
+    config = toy_variant(name)
+    path = tmp_path / "again.toml"
+    path.write_text(config.to_toml())
+    again = load_config(path, plugins=toy_plugins)
+    assert again == config
+    assert again.to_toml() == config.to_toml()
+    path.write_text(tomli_w.dumps(config.recorded()))
+    assert load_config(path, plugins=toy_plugins) == config
 
 
 @attrs.define

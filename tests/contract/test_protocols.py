@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import toy_capabilities
 import toys
 
 import evoframe
@@ -23,6 +24,8 @@ COMPONENTS: dict[str, Any] = {
     "Executor": toys.Here(),
     "ExecutorRun": toys.Here().start(),
     "Objective": toys.Value(),
+    "RoleProvider": toy_capabilities.Constant(),
+    "RoleRun": toy_capabilities.Constant().start(toys.Product()),
     "Simulator": toys.Product(),
 }
 

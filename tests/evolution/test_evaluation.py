@@ -119,7 +119,7 @@ def test_batches_keep_the_order_and_shrink_towards_the_end(count: int, workers: 
     sizes = [len(batch) for batch in batches]
     assert [a for batch in batches for a in batch] == list(range(count))
     assert sizes == sorted(sizes, reverse=True)
-    assert max(sizes, default=1) <= 12
+    assert max(sizes, default=1) <= 4
     assert sizes[-1:] in ([], [1])
 
 
@@ -135,7 +135,7 @@ class TestMeanwhile:
         scorer = evaluator(Counting(), workers=2)
         scores = scorer.evaluate(designs(), 100, lambda: seen.append(len(made)))
         scorer.close()
-        assert seen == [3 * 12]  # three batches: two for the other worker, and one more
+        assert seen == [3 * 4]  # three batches: two for the other worker, and one more
         assert [score.value for score in scores] == list(range(100))
 
     @pytest.mark.parametrize("workers", [1, 3])
@@ -158,7 +158,7 @@ class TestMeanwhile:
         with pytest.raises(type(error)) as caught:
             scorer.evaluate((design(a, 1) for a in range(100)), 100, fail)
         assert caught.value is error
-        assert len(counting.simulated) <= 3 * 12
+        assert len(counting.simulated) <= 3 * 4
         scorer.close()
 
 

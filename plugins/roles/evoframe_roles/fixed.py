@@ -118,6 +118,7 @@ class _Given:
 
     design: Design
     roles: tuple[str, ...]
+    source: str
 
     def fill(self, design: Design, rng: np.random.Generator) -> Design:  # noqa: ARG002
         """Return *design* with the roles; *rng* is not used."""
@@ -138,17 +139,17 @@ class _Given:
             ValueError: They differ.
         """
         if state != self.state():
-            raise ValueError(f"the given design differs from that with which the run started: {state!r}")
+            raise ValueError(f"{self.source}: the design differs from that with which the run started")
 
 
 def _given(designs: Sequence[tuple[str, Design]], wanted: str, roles: tuple[str, ...], source: str) -> _Given:
     found = [design for label, design in designs if wanted in (label, "")]
     if len(found) != 1:
         labels = ", ".join(label for label, _ in designs)
-        asked = f"no design '{wanted}'" if wanted else "several designs, and none is chosen"
+        asked = f"{len(found) or 'no'} designs '{wanted}'" if wanted else "several designs, none is chosen"
         raise ConfigurationError(f"{source}: {asked}; set the option design to one of: {labels}")
     lacking = [role for role in roles if role not in found[0].roles]
     if lacking:
         there = ", ".join(found[0].roles)
         raise ConfigurationError(f"{source}: the design lacks the role '{lacking[0]}'; its roles: {there}")
-    return _Given(found[0], roles)
+    return _Given(found[0], roles, source)

@@ -38,6 +38,7 @@ class Checks:
         chosen: Mapping[str, Chosen[Any] | None],
     ) -> None:
         self.run = run
+        self.alone = len(populations) == 1
         self.populations = {role: given for role, given in populations.items() if given is not None}
         self.roles = {name: given for name, given in roles.items() if given is not None}
         self.complete = (
@@ -88,8 +89,8 @@ class Checks:
         strategy = own.component if own else self.chosen.get("collaboration")
         if strategy is None:
             return
-        if len(self.populations) == 1:  # its individuals meet nobody, and have one score
-            yield from self._aggregators(path, roles, [1])
+        if self.alone:  # its individuals meet nobody, and have one score
+            yield from self._aggregators(path, {roles[0]: {1}})
             return
         counts: dict[str, set[int]] = {}
         for other, population in self.populations.items():
@@ -104,21 +105,21 @@ class Checks:
             listed = ", ".join(map(str, sorted(set().union(*counts.values()))))
             message = f"populations of different sizes give different numbers of collaborators: {listed}"
             yield Fault(path, message)
-        yield from self._aggregators(path, roles, sorted(set().union(*counts.values())))
+        met = {role: set().union(*(n for other, n in counts.items() if other != role)) for role in roles}
+        yield from self._aggregators(path, met)
 
-    def _aggregators(
-        self, path: tuple[str, ...], roles: Sequence[str], counts: Sequence[int]
-    ) -> Iterator[Fault]:
-        """Check that the aggregators of some populations accept numbers of collaborators."""
-        places: dict[tuple[str, ...], Any] = {}
-        for role in roles:
+    def _aggregators(self, path: tuple[str, ...], met: Mapping[str, set[int]]) -> Iterator[Fault]:
+        """Check that the aggregators of populations accept their numbers of collaborators."""
+        places: dict[tuple[str, ...], tuple[Any, set[int]]] = {}
+        for role, counts in met.items():
             own = self.populations[role].aggregator
             if own is not None:
-                places["populations", role, "aggregator"] = own.component
+                places["populations", role, "aggregator"] = own.component, counts
             elif "aggregator" in self.chosen:
-                places["aggregator",] = self.chosen["aggregator"]
-        for place, aggregator in places.items():
-            for count in counts:
+                shared = places.setdefault(("aggregator",), (self.chosen["aggregator"], set()))
+                shared[1].update(counts)
+        for place, (aggregator, numbers) in places.items():
+            for count in sorted(numbers):
                 yield from _refusal(place, functools.partial(aggregator.check, count), involves=path)
 
     def _measures(self) -> Iterator[Fault]:

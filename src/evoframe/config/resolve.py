@@ -301,6 +301,9 @@ class _Reading:
 
     def _role(self, name: str, table: Any, choose: Callable[..., Chosen[Any] | None]) -> RoleConfig | None:
         path = ("roles", name)
+        if not is_role(name):
+            message = f"invalid name '{name}'; use lower-case letters, digits, - and _, with a letter first"
+            self.faults.append(Fault(path, message))
         if not isinstance(table, Mapping):
             self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
             return None

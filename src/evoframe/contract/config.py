@@ -312,7 +312,7 @@ def deciding(tables: Mapping[str, Any]) -> Tree:
 
 
 def is_role(name: str) -> bool:
-    """Return whether *name* is a valid name of a population."""
+    """Return whether *name* is a valid name of a population, or of a role that no population evolves."""
     return re.fullmatch(r"[a-z][a-z0-9_-]*", name) is not None
 
 

@@ -72,7 +72,7 @@ class Coevolution:
     _fittest_have_met: bool = attrs.field(default=False, init=False)
     _judged: int = attrs.field(default=0, init=False)
     _clocks: tuple[float, ...] = attrs.field(init=False)
-    _memories: dict[str, Any] = attrs.field(factory=dict, init=False)
+    _ended: dict[str, Any] = attrs.field(factory=dict, init=False)
     _recent: deque[dict[tuple[int, ...], Score]] = attrs.field(init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -80,6 +80,7 @@ class Coevolution:
         # Survivors of a population meet the same collaborators again if these are still the chosen ones, so
         # that the turn in which the population was last evaluated is the oldest one worth keeping.
         self._recent = deque(maxlen=sum(self.timing.weights))
+        self._ended = self._state_of_turn()
 
     @property
     def length(self) -> int:
@@ -108,7 +109,7 @@ class Coevolution:
         while self.turn < self.length:
             yield self._take_turn(self._next())
         if not self._fittest_have_met:
-            yield self._complete_turn({(): [self._fittest()]}, time.perf_counter())
+            yield self._final_turn()
 
     def __enter__(self) -> Self:
         return self
@@ -127,13 +128,8 @@ class Coevolution:
         Args:
             changed: Names of the populations to include; by default all.
         """
-        loop = attrs.asdict(
-            _Loop(self.turn, self.best_score, self._fittest_have_met, self._clocks, self._judged)
-        )
-        needed = {"clocks": self.timing.kind == "asynchronous", "judged": self.roles.are_redrawn}
-        loop = {key: value for key, value in loop.items() if needed.get(key, True)}
         wanted = [p for p in self.populations if changed is None or p.name in changed]
-        return {"loop": loop, **{f"population/{p.name}": p.state() for p in wanted}, **self._memories}
+        return {**self._ended, **{f"population/{p.name}": p.state() for p in wanted}}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Continue from the result of :meth:`state`, bit for bit as without an interruption.
@@ -157,7 +153,7 @@ class Coevolution:
         if self.roles.state() is not None:
             self.roles.restore(state["roles"])
         self.roles.begin_turn(self.turn)
-        self._memories = self._remembered()
+        self._ended = self._state_of_turn()
 
     def close(self) -> None:
         """Shut down the workers."""
@@ -187,6 +183,11 @@ class Coevolution:
             met[(index,)] = meetings_with(index, self.collaborations[index].teams())
         return self._complete_turn(met, started)
 
+    def _final_turn(self) -> Turn:
+        for population in self.populations:
+            population.begin_turn()
+        return self._complete_turn({(): [self._fittest()]}, time.perf_counter())
+
     def _fittest(self) -> Meeting:
         return tuple(population.fittest() for population in self.populations)
 
@@ -212,22 +213,21 @@ class Coevolution:
         union = list(dict.fromkeys(itertools.chain.from_iterable(meetings.values())))
         scores = self._scores(union, self._while_simulating)
         judged = [index for indices in meetings for index in indices]
-        for indices, met in meetings.items():
-            own = scores if len(met) == len(scores) else {meeting: scores[meeting] for meeting in met}
-            for index in indices:
-                self._judge(index, own, first=first)
+        self._judge(meetings, scores, first=first)
         pairs = self._pairs(scores)
         if not self.roles.are_redrawn:
             self._recent.append({p.genomes: score for p, score in zip(pairs, scores.values(), strict=True)})
         self.turn += 1
         self._clocks = self.timing.advanced(self._clocks, self.turn, judged, len(scores))
         self._fittest_have_met = self._fittest() in scores
+        best_pair = self._best_pair(scores)
         self._show_strategies(scores)
+        self._ended = self._state_of_turn()
         return Turn(
             index=self.turn,
             reports=tuple(self.populations[index].report() for index in judged),
             pairs=pairs,
-            best_pair=self._best_pair(scores),
+            best_pair=best_pair,
             workload=Workload(
                 pairs=len(scores),
                 simulations=self.evaluator.simulations - before,
@@ -244,12 +244,33 @@ class Coevolution:
         if then != now:
             self.populations[then].breed()
 
-    def _judge(self, index: int, scores: Mapping[Meeting, Score], *, first: bool) -> None:
-        """Set the fitness of the members of a population by the scores of their meetings."""
-        population, judge = self.populations[index], self.judges[index]
+    def _judge(
+        self,
+        meetings: Mapping[tuple[int, ...], Sequence[Meeting]],
+        scores: Mapping[Meeting, Score],
+        *,
+        first: bool,
+    ) -> None:
+        """Set the fitness of the members of populations by the scores of the meetings that judge them."""
+        own = {
+            index: scores if len(met) == len(scores) else {meeting: scores[meeting] for meeting in met}
+            for indices, met in meetings.items()
+            for index in indices
+        }
+        # All before any is set: no credit depends on the order of the populations.
+        judgements = {index: self._judgement(index, seen, first=first) for index, seen in own.items()}
+        for index, judgement in judgements.items():
+            self.populations[index].judge(*judgement)
+            self.collaborations[index].note_collaborators(own[index], self.populations)
+
+    def _judgement(
+        self, index: int, scores: Mapping[Meeting, Score], *, first: bool
+    ) -> tuple[list[float | None], float | None, dict[str, list[float | None]]]:
+        """Return fitness, floor and measures of the members of a population: see :meth:`Population.judge`."""
+        judge = self.judges[index]
         seen = functools.partial(scored_meetings, self.turn + 1, self.populations, scores, judge.sign)
-        fitness = judge.fitness(population, index, scores, seen, first=first)
-        population.judge(fitness, judge.floor(scores), self._measured(index, scores, first=first))
+        fitness = judge.fitness(self.populations[index], index, scores, seen, first=first)
+        return fitness, judge.floor(scores), self._measured(index, scores, first=first)
 
     def _measured(
         self, index: int, scores: Mapping[Meeting, Score], *, first: bool
@@ -277,13 +298,19 @@ class Coevolution:
         for collaboration, judge in zip(self.collaborations, self.judges, strict=True):
             if collaboration.observes:
                 collaboration.observe(scored_meetings(self.turn, self.populations, scores, judge.sign))
-        self._memories = self._remembered()
 
-    def _remembered(self) -> dict[str, Any]:
-        states = ((_part(collaboration), collaboration.state()) for collaboration in self.collaborations)
-        memories = {part: state for part, state in states if state is not None}
-        roles = self.roles.state()
-        return memories if roles is None else {**memories, "roles": roles}
+    def _state_of_turn(self) -> dict[str, Any]:
+        """Return the state after the turn that has just ended, without that of populations."""
+        loop = attrs.asdict(
+            _Loop(self.turn, self.best_score, self._fittest_have_met, self._clocks, self._judged)
+        )
+        needed = {"clocks": self.timing.kind == "asynchronous", "judged": self.roles.are_redrawn}
+        parts: dict[str, Any] = {
+            "loop": {key: value for key, value in loop.items() if needed.get(key, True)},
+            **{_part(collaboration): collaboration.state() for collaboration in self.collaborations},
+            "roles": self.roles.state(),
+        }
+        return {part: state for part, state in parts.items() if state is not None}
 
     def _scores(
         self, meetings: Collection[Meeting], on_simulating: Callable[[], None] = lambda: None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import attrs
@@ -23,7 +23,9 @@ from evoframe.contract import (
 )
 from evoframe.documents import structure
 from evoframe.errors import ComponentError
+from evoframe.evolution.decoding import Meeting
 from evoframe.evolution.population import Population
+from evoframe.files import json_text
 
 __all__ = ["Collaboration"]
 
@@ -47,7 +49,7 @@ class Collaboration:
     _met: dict[str, dict[int, tuple[int, ...]]] = attrs.field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             self._runs = {
                 other.name: started(self.strategy, self.own.name, other.name) for other in self.others
             }
@@ -56,6 +58,11 @@ class Collaboration:
     def observes(self) -> bool:
         """Whether the strategy has a memory, or may ask whom individuals met."""
         return isinstance(self.strategy, SupportsMemory | SupportsEach)
+
+    @property
+    def _whose(self) -> str:
+        """The population for whose individuals it chooses, in errors: several can share a strategy."""
+        return f"population {self.own.name}"
 
     def teams(self) -> list[Sequence[tuple[int, ...]]]:
         """Return the teams of each individual: one position in each other population.
@@ -73,19 +80,33 @@ class Collaboration:
         teams = {row: self._combined(row) for row in set(rows)}  # most are equal
         return [teams[row] for row in rows]
 
+    def note_collaborators(self, meetings: Iterable[Meeting], populations: Sequence[Population]) -> None:
+        """Remember whom the individuals met in the meetings in which they were evaluated."""
+        if not self.observes:
+            return
+        own = next(column for column, each in enumerate(populations) if each is self.own)
+        for column, other in enumerate(populations):
+            if column == own:
+                continue
+            met: dict[int, dict[int, None]] = {}
+            for meeting in meetings:
+                collaborators = met.setdefault(self.own.members[meeting[own]].id, {})
+                collaborators[other.present[meeting[column]].id] = None
+            self._met[other.name] = {key: tuple(collaborators) for key, collaborators in met.items()}
+
     def observe(self, seen: ScoredMeetings) -> None:
-        """Remember whom the individuals met, and show the turn to the strategy."""
-        self._note_collaborators(seen)
+        """Show a turn to the strategy."""
         for other in self.others:
-            with blaming(self.key):
+            with blaming(self.key, self._whose):
                 self._runs[other.name].observe(seen, other.archivable)
 
     def state(self) -> dict[str, Any] | None:
         """Return everything needed to continue, as JSON values; ``None`` for a strategy without a memory."""
         if not self.observes:
             return None
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             runs = {name: run.state() for name, run in self._runs.items()}
+            json_text(runs)  # fails here, so that the strategy is named
         met = {
             name: [[key, list(collaborators)] for key, collaborators in met.items()]
             for name, met in self._met.items()
@@ -101,7 +122,7 @@ class Collaboration:
         """
         saved = structure(state, _Saved, ("collaboration", self.own.name))
         for name, run in self._runs.items():
-            with blaming(self.key):
+            with blaming(self.key, self._whose):
                 run.restore(saved.runs.get(name))
         self._met = {
             name: {int(key): tuple(map(int, ids)) for key, ids in met} for name, met in saved.met.items()
@@ -110,17 +131,26 @@ class Collaboration:
     def _positions(self, other: Population) -> list[tuple[int, ...]]:
         """Return the positions of the collaborators of each individual from another population."""
         members, judged = other.candidates, self._judged(other)
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             sizes = sizes_of(self.strategy, len(members))
-        with blaming(self.key):
+        with blaming(self.key, self._whose):
             rows = list(self._runs[other.name].choose(judged, members, self.own.rng))
         if len(rows) != len(judged):
-            raise ComponentError(self.key, f"chose for {len(rows)} individuals, expected {len(judged)}")
+            problem = f"chose for {len(rows)} individuals, expected {len(judged)}"
+            raise ComponentError(self.key, problem, self._whose)
         positions = []
         for row in rows:
-            _refuse_invalid(self.key, row, sizes, other)
+            self._refuse_invalid(row, sizes, other)
             positions.append(tuple(other.admit(choice) for choice in row))
         return positions
+
+    def _refuse_invalid(self, row: Sequence[Choice], sizes: Sequence[int], other: Population) -> None:
+        """Refuse collaborators that do not exist or are repeated, and another number than declared."""
+        ids = _ids(row, other.candidates) if isinstance(row, Sequence) else [None]
+        if None in ids or len(set(ids)) != len(ids) or len(ids) not in sizes:
+            expected = " or ".join(map(str, sizes))
+            there = f"the {len(other.candidates)} members of '{other.name}'"
+            raise ComponentError(self.key, f"chose {row}, expected {expected} of {there}", self._whose)
 
     def _judged(self, other: Population) -> list[Judged]:
         met = self._met.get(other.name, {})
@@ -133,29 +163,9 @@ class Collaboration:
         counts = {len(column) for column in columns}
         if len(counts) > 1:
             listed = ", ".join(map(str, sorted(counts)))
-            raise ComponentError(self.key, f"chose different numbers from other populations: {listed}")
+            problem = f"chose different numbers from other populations: {listed}"
+            raise ComponentError(self.key, problem, self._whose)
         return list(zip(*columns, strict=True))
-
-    def _note_collaborators(self, seen: ScoredMeetings) -> None:
-        own = seen.populations.index(self.own.name)
-        for other in self.others:
-            column = seen.populations.index(other.name)
-            ids = [member.id for member in seen.members[column]]
-            self._met[other.name] = {
-                member.id: tuple(dict.fromkeys(ids[i] for i in seen.meetings[rows, column]))
-                for member, rows in zip(self.own.members, seen.of(own), strict=True)
-                if len(rows)
-            }
-
-
-def _refuse_invalid(key: str, row: Sequence[Choice], sizes: Sequence[int], other: Population) -> None:
-    """Refuse collaborators that do not exist or are repeated, and another number than declared."""
-    ids = _ids(row, other.candidates) if isinstance(row, Sequence) else [None]
-    if None in ids or len(set(ids)) != len(ids) or len(ids) not in sizes:
-        expected = " or ".join(map(str, sizes))
-        raise ComponentError(
-            key, f"chose {row}, expected {expected} of the {len(other.candidates)} members of '{other.name}'"
-        )
 
 
 def _ids(row: Sequence[Choice], members: Sequence[Member]) -> list[int | None]:

@@ -99,11 +99,12 @@ class Judge:
         rows: Sequence[Sequence[float | None]],
         seen: ScoredMeetings,
     ) -> list[float | None]:
-        with blaming(self.key, population.name):
+        whose = f"population {population.name}"
+        with blaming(self.key, whose):
             found = np.asarray(credit.credit(seen, column), dtype=np.float64)
         if found.shape != (len(rows),):
             problem = f"returned fitness of shape {found.shape}, expected {(len(rows),)}"
-            raise ComponentError(self.key, problem, population.name)
+            raise ComponentError(self.key, problem, whose)
         fitness = [None if None in row else value for row, value in zip(rows, found.tolist(), strict=True)]
         for position, value in enumerate(fitness):
             if value is not None and not math.isfinite(value):

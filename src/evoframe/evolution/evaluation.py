@@ -114,7 +114,9 @@ class Evaluator:
 
     def _batch_size(self, left: int) -> int:
         """Return the size of the next batch: they shrink, so that all workers finish together."""
-        return min(max(1, left // self.workers.workers), batch_size_of(self.simulator, _BATCH))
+        with blaming("simulator"):
+            largest = batch_size_of(self.simulator, _BATCH)
+        return min(max(1, left // self.workers.workers), largest)
 
     def _key(self, design: Design, record: Record) -> bytes:
         with blaming("simulator"):
@@ -226,17 +228,18 @@ def _score(outcome: Outcome, record: Record, objective: Objective, measures: Col
 
 
 def _measures(outcome: Outcome, objective: Objective, names: Collection[str]) -> dict[str, float]:
-    """Return the measures of an outcome with these names, of which the simulator's come first."""
+    """Return the measures of an outcome with these names, each from the component that declares it."""
     if not names:
         return {}
     by_objective: Mapping[str, float] = {}
+    declared: Collection[str] = ()
     if isinstance(objective, SupportsOutcomeMeasures):
         with blaming("objective"):
-            by_objective = objective.measure(outcome)
+            by_objective, declared = objective.measure(outcome), objective.measures
     found: dict[str, float] = {}
     for name in names:
-        key = "simulator" if name in outcome.measures else "objective"
-        value = outcome.measures.get(name, by_objective.get(name))
+        key, supplied = ("objective", by_objective) if name in declared else ("simulator", outcome.measures)
+        value = supplied.get(name)
         if not isinstance(value, numbers.Real) or not math.isfinite(value):
             problem = f"returned {value!r} for the measure '{name}', expected a finite number"
             raise ComponentError(key, problem)

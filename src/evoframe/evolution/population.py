@@ -196,7 +196,8 @@ class Population:
         """Return the network that the genome at *position* expresses."""
         if position not in self._networks:
             with blaming(self._evolver, self.called(position)):
-                self._networks[position] = _Remembering(self.evolver.express(self._genome(position)))
+                network = self.evolver.express(self._genome(position))
+            self._networks[position] = _Remembering(network, self._evolver, self.called(position))
         return self._networks[position]
 
     def dump(self, position: int) -> Any:
@@ -273,8 +274,6 @@ class Population:
                 turns.
             floor: Fitness of such a genome if there are no earlier turns either: the lowest score of this
                 turn; ``None`` without scores.
-            measures: The measures that the evolver wants, one value per genome; ``None`` if a simulation
-                diverged. Such a genome gets the lowest value of the other genomes, or 0.
             measures: The measures that the evolver wants: one value per genome; ``None`` if a simulation
                 diverged. Such a genome gets the lowest value of the others, or 0.
 
@@ -408,13 +407,16 @@ class _Remembering:
     """
 
     _network: Network
+    _evolver: str
+    _individual: str
     _points: NDArray[np.float64] | None = None
     _values: NDArray[np.float64] = attrs.field(factory=lambda: np.empty(0))
 
     def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         if points is self._points:
             return self._values
-        values = self._network(points)
+        with blaming(self._evolver, self._individual):  # an encoder calls it
+            values = self._network(points)
         if points.flags.writeable:
             return values
         values = values.copy()  # the network may use its array again

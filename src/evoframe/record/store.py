@@ -281,8 +281,6 @@ def _state(part: str, values: Any) -> str:
         problem = f"its state cannot be saved as JSON: {error}"
         if kind == "population":
             raise ComponentError(f"populations.{population}.evolver", problem) from error
-        if kind == "collaboration":
-            raise ComponentError("collaboration", problem, f"population {population}") from error
         raise RunError(problem, key=part) from error
 
 

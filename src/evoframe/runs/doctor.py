@@ -28,6 +28,7 @@ from evoframe.record import (
     provenance_of,
 )
 from evoframe.registry import Plugins
+from evoframe.runs.blame import assembled
 from evoframe.runs.restoring import configuration_of, restore
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
@@ -231,7 +232,7 @@ def _faults_of_best_pairs(
 
 
 def _state(run: Run, config: RunConfig) -> str:
-    with assemble(config) as coevolution:
+    with assembled(config) as coevolution:
         restore(coevolution, run, config)
     return "can be restored"
 

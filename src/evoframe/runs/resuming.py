@@ -8,7 +8,6 @@ from pathlib import Path
 from evoframe.config import Layer, layers_of
 from evoframe.contract import RunConfig, SupportsVariants
 from evoframe.errors import ConfigurationError
-from evoframe.evolution import assemble
 from evoframe.files import Lock, acquire_lock, is_leftover, parsed_json, released_on_error, remove
 from evoframe.record import (
     CHAINED,
@@ -19,6 +18,7 @@ from evoframe.record import (
     open_run,
 )
 from evoframe.registry import Plugins, discover
+from evoframe.runs.blame import assembled
 from evoframe.runs.execution import Execution, verify_champion
 from evoframe.runs.restoring import configuration_of, listed, restore
 from evoframe.runs.starting import open_store
@@ -135,7 +135,7 @@ def _reopen(
     if run.begun:
         run.read_all()
     genomes = {} if run.begun else starting_genomes(config, plugins)
-    coevolution = assemble(config, genomes)
+    coevolution = assembled(config, genomes)
     try:
         if run.begun:
             restore(coevolution, run, config)

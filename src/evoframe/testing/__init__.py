@@ -35,6 +35,7 @@ pytest.register_assert_rewrite(
             "executors",
             "laws",
             "objectives",
+            "roles",
             "seeding",
             "simulators",
             "strategies",
@@ -49,6 +50,7 @@ from evoframe.testing.encoders import EncoderContract  # noqa: E402
 from evoframe.testing.evolvers import EvolverContract  # noqa: E402
 from evoframe.testing.executors import ExecutorContract  # noqa: E402
 from evoframe.testing.objectives import ObjectiveContract  # noqa: E402
+from evoframe.testing.roles import RoleProviderContract  # noqa: E402
 from evoframe.testing.simulators import SimulatorContract  # noqa: E402
 from evoframe.testing.strategies import CollaborationStrategyContract  # noqa: E402
 
@@ -60,5 +62,6 @@ __all__ = [
     "EvolverContract",
     "ExecutorContract",
     "ObjectiveContract",
+    "RoleProviderContract",
     "SimulatorContract",
 ]
