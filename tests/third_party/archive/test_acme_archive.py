@@ -28,7 +28,8 @@ def test_individuals_of_records_return_after_they_have_left() -> None:
     for index, (scores, ids) in enumerate(
         [([1.0, 3.0], [11, 12]), ([2.0, 3.0], [13, 14]), ([4.0, np.nan], [15, 16])]
     ):
-        run.observe(turn(index, scores, ids), lambda place, ids=ids: {"id": ids[place]})
+        genomes = [{"id": id_} for id_ in ids]
+        run.observe(turn(index, scores, ids), genomes.__getitem__)
     judged, members = [Judged(Member(1, 0.0), index=0)], [Member(15, 4.0), Member(17, 9.0)]
     [[latest, earlier]] = run.choose(judged, members, np.random.default_rng())
     assert latest == 0  # the individual 15 is still a member

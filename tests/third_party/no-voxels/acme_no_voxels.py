@@ -88,7 +88,7 @@ class Ballistics:
 
     def _outcome(self, design: Design, steps: NDArray[np.int64], tracks: Sequence[str]) -> Outcome:
         flight, diverged_at = self._flight(_throw(design))
-        times = steps * self.time_step
+        times = steps.astype(np.float64) * self.time_step
         return Outcome(steps, times, dict.fromkeys(tracks, flight[steps]), diverged_at)
 
     def _flight(self, throw: NDArray[np.float64]) -> tuple[NDArray[np.float64], int | None]:

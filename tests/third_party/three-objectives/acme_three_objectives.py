@@ -64,7 +64,8 @@ class Genome:
 
     def __call__(self, points: Floats) -> Floats:
         sums = points @ self.weights[:-1] + self.weights[-1]
-        return np.sin(np.clip(sums, -1e6, 1e6))
+        outputs: Floats = np.sin(np.clip(sums, -1e6, 1e6))
+        return outputs
 
 
 class DominationRun:
