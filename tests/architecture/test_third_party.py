@@ -4,29 +4,16 @@ from __future__ import annotations
 
 import functools
 import json
-import shutil
 from pathlib import Path
 
 import pytest
 from processes import Evoframe, python
-
-SOURCES = Path(__file__).parents[1] / "third_party"
-
-
-def install(name: str, target: Path) -> None:
-    source = target.parent / f"source-{name}"
-    shutil.copytree(SOURCES / name, source)  # building leaves files behind
-    options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--target", str(target)]
-    installed = python("-m", "pip", "install", *options, source)
-    assert installed.returncode == 0, installed.stderr
+from third_parties import installed
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    target = tmp_path_factory.mktemp("third-party") / "site"
-    for name in ("median", "broken"):
-        install(name, target)
-    return target
+    return installed(tmp_path_factory.mktemp("third-party"), "median", "broken")
 
 
 @pytest.fixture

@@ -33,14 +33,14 @@ __all__ = ["EvolverContract"]
 class EvolverContract(SeedingLaws):
     """The laws of an :class:`~evoframe.Evolver` and of the run that it starts.
 
-    Graphs of genomes are tested if the evolver returns them; loading and seeds, if its runs offer them.
+    The tests supply the measures that the evolver wants. Graphs of genomes are tested if the evolver returns
+    them; loading and seeds, if its runs offer them.
 
     Attributes:
         inputs: Number of inputs of its networks.
         outputs: Number of outputs of its networks.
         size: Size of the population.
         turns: Number of turns of the tests.
-        measures: Names of the measures that it requires in addition to fitness.
     """
 
     def test_sizes_are_refused_by_a_configuration_error(self) -> None:
@@ -55,6 +55,15 @@ class EvolverContract(SeedingLaws):
     def test_it_starts_a_run(self) -> None:
         """``start`` returns an ``EvolverRun`` with every method of the protocol."""
         assert isinstance(self.start(), EvolverRun), "start() must return an EvolverRun; a method is missing"
+
+    def test_wanted_measures_are_a_tuple_of_different_names(self) -> None:
+        """``wants`` is a tuple of names, without repeats, if the evolver has it."""
+        wanted = getattr(self.component, "wants", ())
+        assert isinstance(wanted, tuple), f"wants must be a tuple, found {type(wanted).__name__}"
+        assert all(isinstance(name, str) and name.strip() for name in wanted), (
+            f"wants must be strings that are not empty, found {wanted}"
+        )
+        assert len(set(wanted)) == len(wanted), f"wants must be different names, found {wanted}"
 
     def test_the_population_keeps_its_size(self) -> None:
         """``ask`` returns as many genomes as the population has members, in every turn."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe.contract import Evolver, EvolverRun
+from evoframe.contract import Evolver, EvolverRun, wanted_by
 from evoframe.testing.components import ComponentContract
 
 __all__ = ["Evolving", "Floats", "dumped_all", "json_text"]
@@ -25,7 +25,6 @@ class Evolving(ComponentContract[Evolver]):
     outputs: ClassVar[int] = 2
     size: ClassVar[int] = 12
     turns: ClassVar[int] = 6
-    measures: ClassVar[tuple[str, ...]] = ()
 
     def start(self, seed: int = 0) -> EvolverRun:
         """Start a run with a new generator."""
@@ -33,12 +32,12 @@ class Evolving(ComponentContract[Evolver]):
         return self.component.start(self.inputs, self.outputs, self.size, rng)
 
     def judge(self, run: EvolverRun, genomes: Sequence[Any]) -> tuple[Floats, Mapping[str, Floats]]:
-        """Return the fitness and measures of *genomes*, computed from the outputs of their networks."""
+        """Return the fitness of *genomes* and the measures that the evolver wants, from their networks."""
         points = self._points(0, 1.0)
         outputs = [np.arctan(run.express(genome)(points)) for genome in genomes]
         fitness = np.array([output.mean() for output in outputs])
         spread = np.array([output.std() for output in outputs])
-        return fitness, dict.fromkeys(self.measures, spread)
+        return fitness, dict.fromkeys(wanted_by(self.component), spread)
 
     def _points(self, seed: int, scale: float) -> Floats:
         return scale * np.random.default_rng(seed).uniform(-1, 1, size=(16, self.inputs))
