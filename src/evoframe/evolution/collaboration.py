@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -54,7 +55,7 @@ class Collaboration:
                 other.name: started(self.strategy, self.own.name, other.name) for other in self.others
             }
 
-    @property
+    @functools.cached_property
     def observes(self) -> bool:
         """Whether the strategy has a memory, or may ask whom individuals met."""
         return isinstance(self.strategy, SupportsMemory | SupportsEach)

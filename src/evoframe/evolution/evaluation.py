@@ -93,6 +93,8 @@ class Evaluator:
         key_of: dict[Design, bytes] = {}  # designs are compared by identity
         known: set[bytes] = set()
         batch: dict[bytes, Design] = {}
+        with blaming("simulator"):
+            largest = batch_size_of(self.simulator, _BATCH)
         for design in designs:
             if design not in key_of:
                 key_of[design] = self._key(design, record)
@@ -100,7 +102,7 @@ class Evaluator:
             if key not in known and key not in self._cache:
                 known.add(key)
                 batch[key] = design
-            if batch and len(batch) >= self._batch_size(count - len(keys)):
+            if batch and len(batch) >= self._batch_size(count - len(keys), largest):
                 yield batch
                 batch = {}
         if batch:
@@ -112,10 +114,8 @@ class Evaluator:
         workers = self.workers.workers
         return _BATCHES_PER_WORKER * workers - 1 if workers > 1 else 0
 
-    def _batch_size(self, left: int) -> int:
+    def _batch_size(self, left: int, largest: int) -> int:
         """Return the size of the next batch: they shrink, so that all workers finish together."""
-        with blaming("simulator"):
-            largest = batch_size_of(self.simulator, _BATCH)
         return min(max(1, left // self.workers.workers), largest)
 
     def _key(self, design: Design, record: Record) -> bytes:
