@@ -102,7 +102,7 @@ class TestRecord:
         assert (short.directory / "champion.vxa").read_bytes().startswith(b"<?xml")
 
 
-# Columns of tables, and digests of their rows and of the champion's file. A change that is not meant to change
+# Columns of tables; digests of their rows and of the file of the champion. A change that is not to change
 # results keeps them; another one is named in CHANGELOG.md.
 COLUMNS = {
     "turns": "turn, population, generation, best, best_so_far, standing_champion, mean",
