@@ -12,7 +12,7 @@ import toys
 from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
-from evoframe import Design, Member, Network, PopulationReport, RunError, StructureError
+from evoframe import Archived, Design, Member, Network, PopulationReport, RunError, StructureError
 from evoframe.errors import ComponentError
 from evoframe.evolution.population import Population
 
@@ -338,6 +338,15 @@ class TestCandidates:
         population.reproduce(keep_candidates=True)
         assert population.admit(0) == 4
         assert population.decode(4, Design()).roles["a"][0] == last[0]
+
+    def test_guests_of_a_population_that_does_not_reproduce_are_replaced_in_the_next_turn(self) -> None:
+        rng = np.random.default_rng(0)
+        population = Population("a", toys.Number(), caps.Wanting().start(1, 1, 4, rng), rng)
+        population.reproduce()
+        for key, genome in ((50, 0.5), (60, 0.25)):
+            population.begin_turn()
+            assert population.admit(Archived(Member(id=key, fitness=1.0), genome)) == 4
+            assert population.decode(4, Design()).roles["a"][0] == genome
 
     def test_are_discarded_when_a_state_is_restored(self) -> None:
         population = new_population()
