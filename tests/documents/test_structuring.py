@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Generic, Literal, TypeVar
 
 import attrs
 import numpy as np
@@ -10,6 +10,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from evoframe.documents.structuring import StructureError, option_names, structure, unstructure
+
+T = TypeVar("T")
 
 
 @attrs.frozen
@@ -47,6 +49,21 @@ carts = st.builds(Cart, front=wheels, others=st.lists(wheels, max_size=3).map(tu
 @given(carts)
 def test_unstructured_values_are_structured_to_the_same(cart: Cart) -> None:
     assert structure(unstructure(cart), Cart, ("cart",)) == cart
+
+
+@attrs.frozen
+class Harness(Generic[T]):
+    name: str
+    wheel: T
+
+    def as_table(self) -> dict[str, Any]:
+        return {"name": self.name, **unstructure(self.wheel)}
+
+
+@attrs.frozen
+class Pulled:
+    by: Harness[Wheel]
+    more: tuple[Harness[Wheel], ...] = ()
 
 
 @attrs.frozen
@@ -171,3 +188,30 @@ def test_a_fault_names_all_types_or_the_place_inside(table: Any, path: str, mess
         structure(table, Ticket, ("ticket",))
     [fault] = refused.value.faults
     assert (".".join(fault.path), fault.message) == (path, message)
+
+
+class TestValuesOfOthers:
+    """Instances of generic classes, which are created elsewhere, and which write themselves."""
+
+    cart = Pulled(Harness("rope", Wheel(1.0)), (Harness("chain", Wheel(2.0)),))
+
+    def test_are_written_as_their_tables(self) -> None:
+        assert unstructure(self.cart) == {
+            "by": {"name": "rope", "radius": 1.0, "spokes": 32},
+            "more": [{"name": "chain", "radius": 2.0, "spokes": 32}],
+        }
+
+    def test_are_kept(self) -> None:
+        given = {"by": self.cart.by, "more": list(self.cart.more)}
+        assert structure(given, Pulled, ("cart",)) == self.cart
+
+    @pytest.mark.parametrize(
+        ("table", "place"),
+        [({"by": {"name": "rope"}}, "cart.by"), ({"by": cart.by, "more": ["rope"]}, "cart.more[0]")],
+    )
+    def test_cannot_be_created_from_tables(self, table: Any, place: str) -> None:
+        with pytest.raises(StructureError) as refused:
+            structure(table, Pulled, ("cart",))
+        [fault] = refused.value.faults
+        assert ".".join(fault.path) == place
+        assert "a table with the key 'name'" in fault.message

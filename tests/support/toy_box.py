@@ -15,9 +15,14 @@ from evoframe.registry.registry import Plugins
 
 def installed() -> Plugins:
     plugins = Plugins()
+    add_to(plugins)
+    return plugins
+
+
+def add_to(plugins: Plugins) -> None:
+    """Add the toy components to other plugins."""
     plugins.add(toys, Source("toy-box", "1.0", "toys"))
     plugins.add(toy_capabilities, Source("toy-box", "1.0", "capabilities"))
-    return plugins
 
 
 def variant(name: str, directory: Path, *overrides: str, plugins: Plugins | None = None) -> RunConfig:
