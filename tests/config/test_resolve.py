@@ -167,6 +167,11 @@ class TestFaults:
         assert (fault.source, fault.key) == (str(toy_file), "collaboration")
         assert all(part in fault.problem for part in ("30", "6 members", "population 'a'"))
 
+    def test_a_population_of_the_base_can_be_left_out(self, toy_config: Load) -> None:
+        config = toy_config("populations.b=false", "simulator={name='toy-product'}")
+        assert list(config.populations) == ["a"]
+        assert "b" not in config.tables()["populations"]
+
     def test_a_run_needs_a_population(self, toy_config: Load, toy_file: Path) -> None:
         text = toy_file.read_text()
         start, end = text.index("[populations.a]"), text.index("[collaboration]")

@@ -285,6 +285,8 @@ class _Reading:
 
     def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
         tables = self.tree.get("populations")
+        if isinstance(tables, Mapping):  # a file can leave out populations of the preset that it extends
+            tables = {name: table for name, table in tables.items() if table is not False}
         if not isinstance(tables, Mapping) or not tables:
             self.faults.append(
                 Fault(("populations",), "expected at least one table [populations.NAME], found none")
@@ -294,6 +296,8 @@ class _Reading:
 
     def _roles(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, RoleConfig | None]:
         tables = self.tree.get("roles", {})
+        if isinstance(tables, Mapping):
+            tables = {name: table for name, table in tables.items() if table is not False}
         if not isinstance(tables, Mapping):
             self.faults.append(Fault(("roles",), f"expected tables [roles.NAME], found {found(tables)}"))
             return {}
