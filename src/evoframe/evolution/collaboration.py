@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 import attrs
+import numpy as np
 
 from evoframe.contract import (
     Archived,
@@ -175,10 +176,14 @@ def _ids(row: Sequence[Choice], members: Sequence[Member]) -> list[int | None]:
         choice.member.id
         if isinstance(choice, Archived)
         else members[choice].id
-        if type(choice) is int and 0 <= choice < len(members)
+        if _is_index(choice) and 0 <= choice < len(members)
         else None
         for choice in row
     ]
+
+
+def _is_index(choice: object) -> TypeGuard[int]:
+    return isinstance(choice, int | np.integer) and not isinstance(choice, bool)
 
 
 @attrs.frozen

@@ -127,7 +127,7 @@ class Population:
         """
         if not isinstance(choice, Archived):
             if self._candidates is None:
-                return choice
+                return int(choice)
             member, genome = self._candidates[1][choice], self._candidates[0][choice]
             return self._admitted(member, lambda: genome)
         return self._admitted(choice.member, lambda: self._loaded(choice))
