@@ -32,6 +32,7 @@ from .contract.optional import (
     SupportsEach as SupportsEach,
     SupportsExemptions as SupportsExemptions,
     SupportsExport as SupportsExport,
+    SupportsFitnessUnit as SupportsFitnessUnit,
     SupportsGeometry as SupportsGeometry,
     SupportsGraph as SupportsGraph,
     SupportsInputNames as SupportsInputNames,

@@ -267,9 +267,13 @@ class TestRuns:
         self, toy_variant: Variant, settings: list[str]
     ) -> None:
         loading = [f"populations.{role}.evolver={{name='toy-wanting', wants=['age']}}" for role in "ab"]
-        mirror = ["objective=toy-negated", "populations.a.goal=minimize", "populations.b.goal=minimize"]
         plain = list(assemble(toy_variant("sequential", *loading, *settings)))
-        mirrored = list(assemble(toy_variant("sequential", *loading, *settings, *mirror)))
+        negated = toy_variant("sequential", *loading, *settings, "objective=toy-negated")
+        minimizing = {  # which a configuration cannot, because of the champion
+            role: attrs.evolve(population, goal="minimize")
+            for role, population in negated.populations.items()
+        }
+        mirrored = list(assemble(attrs.evolve(negated, populations=minimizing)))
         assert len(plain) == len(mirrored)
         for one, other in zip(plain, mirrored, strict=True):
             assert one.reports == other.reports

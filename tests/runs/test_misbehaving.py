@@ -72,7 +72,7 @@ FAULTS = [
     (toys.Product, "simulate", raises, "simulator", OOPS, PAIR),
     (toys.Product, "simulate", giving([]), "simulator", "0", PAIR),
     (toys.Product, "simulate", giving(None), "simulator", "TypeError: 'NoneType'", ""),
-    (toys.Product, "simulate", giving([7] * 12), "simulator", "Outcome int", ""),
+    (toys.Product, "simulate", giving([7] * 4), "simulator", "Outcome int", ""),
     (toys.Product, "simulate", outcomes([1.0]), "simulator", f"array {TRACK}", ""),
     (toys.Product, "simulate", outcomes(np.ones((1, 3)), 2), "simulator", f"1 {TRACK} 2", ""),
     (toys.Product, "simulate", ENDLESS, "simulator", f"finite {TRACK}", ""),

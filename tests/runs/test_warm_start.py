@@ -10,7 +10,6 @@ import toy_capabilities
 
 from evoframe import (
     ConfigurationError,
-    InputError,
     Plugins,
     Run,
     RunConfig,
@@ -20,6 +19,7 @@ from evoframe import (
     resume,
     run,
 )
+from evoframe.runs.execution import Execution
 from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]
@@ -37,6 +37,12 @@ def initial(config: RunConfig, plugins: Plugins, out: Path) -> list[float]:
     execution = prepare(config, plugins, out)
     execution.play(lambda: True)
     return list(execution._coevolution.populations[0].genomes)
+
+
+def abandon(execution: Execution) -> None:
+    """Leave a run as a kill before its first turn does."""
+    execution._coevolution.close()
+    execution._store.close()
 
 
 def last_genomes(config: RunConfig) -> list[float]:
@@ -83,19 +89,46 @@ def test_a_run_is_resumed_without_the_other_one(
     assert load_run(tmp_path / "left").finished()
 
 
+def test_a_run_that_was_killed_before_its_first_turn_reads_them_again(
+    toy_config: Load, toy_plugins: Plugins, other: Run, tmp_path: Path
+) -> None:
+    config = toy_config(WANTING, f"populations.a.start.run='{other.directory}'", "run.seed=5")
+    whole = run(config, out=tmp_path / "whole", plugins=toy_plugins)
+    abandon(prepare(config, toy_plugins, tmp_path / "left"))
+    assert resume(tmp_path / "left", plugins=toy_plugins).pairs() == whole.pairs()
+
+
+def test_other_populations_can_start_with_the_best_of_several_draws(
+    toy_config: Load, toy_plugins: Plugins, other: Run, tmp_path: Path
+) -> None:
+    loading = "populations.b.evolver={name='toy-wanting', wants=[]}"
+    start = f"populations.a.start.run='{other.directory}'"
+    config = toy_config(WANTING, loading, start, "populations.b.start.draws=3")
+    assert initial(config, toy_plugins, tmp_path / "run") == last_genomes(toy_config(WANTING))
+
+
+def test_a_run_without_a_turn_is_refused(toy_config: Load, toy_plugins: Plugins, tmp_path: Path) -> None:
+    abandon(prepare(toy_config(WANTING), toy_plugins, tmp_path / "new"))
+    config = toy_config(WANTING, f"populations.a.start.run='{tmp_path / 'new'}'")
+    with pytest.raises(ConfigurationError, match="no individuals yet") as caught:
+        prepare(config, toy_plugins, tmp_path / "run")
+    assert caught.value.key == "populations.a.start"
+
+
 def test_a_population_that_the_other_run_lacks_is_named(
     toy_config: Load, toy_plugins: Plugins, other: Run, tmp_path: Path
 ) -> None:
     start = f"populations.a.start={{run='{other.directory}', population='c'}}"
     with pytest.raises(ConfigurationError, match="no population 'c'; its populations: a, b") as caught:
         prepare(toy_config(WANTING, start), toy_plugins, tmp_path / "run")
-    assert caught.value.key == "populations.a.start.population"
+    assert caught.value.key == "populations.a.start"
     assert not (tmp_path / "run").exists()
 
 
 def test_a_run_that_does_not_exist_is_named(toy_config: Load, toy_plugins: Plugins, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="nowhere"):
+    with pytest.raises(ConfigurationError, match="nowhere") as caught:
         prepare(toy_config(WANTING, "populations.a.start.run=nowhere"), toy_plugins, tmp_path / "run")
+    assert caught.value.key == "populations.a.start.run"
 
 
 def test_an_evolver_that_accepts_no_genomes_is_named(

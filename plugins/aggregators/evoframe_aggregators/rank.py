@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +30,8 @@ class Rank:
     A collaborator that nobody else met, or met without divergence, compares nobody and is left out; an
     individual without any comparison has 0.5. The fitness has no unit.
     """
+
+    unit: ClassVar[str] = ""
 
     def check(self, n: int) -> None:
         """Require at least one collaborator."""

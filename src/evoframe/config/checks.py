@@ -8,6 +8,8 @@ from typing import Any
 
 from evoframe.contract import (
     CORE_MEASURES,
+    SHARED,
+    Aggregator,
     ArrayType,
     Chosen,
     Encoder,
@@ -51,6 +53,7 @@ class Checks:
         record = self._record() if scored else ()
         return [
             *self._sizes(),
+            *self._goals(),
             *self._timing(),
             *self._collaborations(),
             *self._roles(),
@@ -63,6 +66,25 @@ class Checks:
         for role, population in self.populations.items():
             check = functools.partial(population.evolver.component.check, population.size)
             yield from _refusal(("populations", role), check)
+
+    def _goals(self) -> Iterator[Fault]:
+        """Check that a pair with a large score is wanted, and that aggregators accept negated scores."""
+        minimizing = [role for role, population in self.populations.items() if population.goal == "minimize"]
+        if self.complete and len(minimizing) == len(self.populations):
+            message = (
+                "all populations minimize, but the champion is the pair with the largest score; use an "
+                "objective with the opposite sign"
+            )
+            yield Fault(("populations", minimizing[0], "goal"), message)
+        for role in minimizing:
+            own = self.populations[role].aggregator
+            aggregator = own.component if own else self.chosen.get("aggregator")
+            if isinstance(aggregator, Aggregator) and aggregator.domain[0] >= 0.0:
+                message = (
+                    "'minimize' negates scores, but the aggregator requires positive ones; choose another "
+                    f"populations.{role}.aggregator"
+                )
+                yield Fault(("populations", role, "goal"), message, ("aggregator",))
 
     def _timing(self) -> Iterator[Fault]:
         if self.run is None or self.run.timing != "parallel":
@@ -99,7 +121,7 @@ class Checks:
             try:
                 counts[other] = set(sizes_of(strategy, population.size))
             except ConfigurationError as error:
-                yield Fault(path, f"{error} (population '{other}')")
+                yield Fault(path, f"{_in_place(str(error), path)} (population '{other}')")
                 return
         if len(self.populations) > 2 and len(set(map(frozenset, counts.values()))) > 1:
             listed = ", ".join(map(str, sorted(set().union(*counts.values()))))
@@ -158,15 +180,15 @@ class Checks:
         others = [(("roles", n, "provider"), role.provider.component) for n, role in self.roles.items()]
         before = [step for step in others if not step[1].requires]
         after = [step for step in others if step[1].requires]
-        provided: list[str] = []
+        provided: dict[str, tuple[str, ...]] = {}
         for path, provider in [*before, *steps, *after]:
             for needed in provider.requires:
                 if needed not in provided:
                     yield Fault(path, f"requires the role '{needed}', which nothing before it provides")
             for given in provider.provides:
                 if given in provided:
-                    yield Fault(path, f"provides the role '{given}', which is already provided")
-            provided += provider.provides
+                    yield _provided_twice(given, provided[given], path)
+            provided |= dict.fromkeys(provider.provides, path)
         simulator = self.chosen.get("simulator")
         for needed in simulator.requires if simulator else ():
             if needed not in provided:
@@ -196,4 +218,17 @@ def _refusal(
     try:
         check()
     except ConfigurationError as error:
-        yield Fault(path, str(error), involves)
+        yield Fault(path, _in_place(str(error), path), involves)
+
+
+def _in_place(advice: str, path: tuple[str, ...]) -> str:
+    """Return *advice* of a component about its options with the keys of the place where it was chosen."""
+    *_, key = path
+    return advice.replace(f" {key}.", f" {'.'.join(path)}.") if key in SHARED else advice
+
+
+def _provided_twice(role: str, one: tuple[str, ...], other: tuple[str, ...]) -> Fault:
+    """Return the fault of two providers of a role; it is that of the one that does not evolve, if any."""
+    at, against = (one, other) if one[0] == "roles" else (other, one)
+    message = f"provides the role '{role}', which {'.'.join(against)} also provides"
+    return Fault(at, f"{message}; set its option for the roles" if at[0] == "roles" else message)

@@ -31,6 +31,7 @@ from evoframe.contract.optional import (
     SupportsEach,
     SupportsExemptions,
     SupportsExport,
+    SupportsFitnessUnit,
     SupportsGeometry,
     SupportsGraph,
     SupportsInputNames,
@@ -79,6 +80,7 @@ from evoframe.contract.protocols import (
     RoleRun,
     Simulator,
 )
+from evoframe.contract.units import fitness_unit_of
 from evoframe.contract.values import (
     Archived,
     ArrayType,
@@ -166,6 +168,7 @@ __all__ = [
     "SupportsEach",
     "SupportsExemptions",
     "SupportsExport",
+    "SupportsFitnessUnit",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
@@ -195,6 +198,7 @@ __all__ = [
     "bit_generation_of",
     "blaming",
     "deciding",
+    "fitness_unit_of",
     "is_role",
     "measures_of_designs",
     "measures_of_simulations",

@@ -103,8 +103,9 @@ class RunSettings:
         generations: Number of generations per population (paper: 200, i.e. 400 turns of two populations).
         timing: Order of reproduction. With sequential timing, populations take turns (Potter and De Jong
             1994; the paper). With parallel timing, all reproduce in each turn, and are evaluated with
-            collaborators from the previous generation (Wiegand 2003). With asynchronous timing, each
-            continues as soon as its evaluations are complete, whose durations are drawn from the seed.
+            collaborators from the previous generation (Wiegand 2003). With asynchronous timing, a turn
+            occupies a population for a time drawn from the seed, and whichever is free first takes the next
+            turn, with collaborators from the latest generation of the others.
     """
 
     seed: int = attrs.field(default=1, validator=validators.ge(0))
@@ -179,9 +180,11 @@ class StartSettings:
     draws: int = attrs.field(default=1, validator=validators.ge(1))
 
     @draws.validator
-    def _not_both(self, _: object, draws: int) -> None:
+    def _fits_the_run(self, _: object, draws: int) -> None:
         if draws > 1 and self.run:
             raise ValueError("set either run or draws, not both")
+        if not self.run and (self.population or self.take != "population"):
+            raise ValueError("population and take refer to another run; set run as well")
 
 
 @attrs.frozen

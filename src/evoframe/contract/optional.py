@@ -20,6 +20,7 @@ from evoframe.contract.protocols import (
     Aggregator,
     CollaborationRun,
     CollaborationStrategy,
+    Credit,
     Encoder,
     Evolver,
     EvolverRun,
@@ -49,6 +50,7 @@ __all__ = [
     "SupportsEach",
     "SupportsExemptions",
     "SupportsExport",
+    "SupportsFitnessUnit",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
@@ -444,6 +446,15 @@ class SupportsOutcomeMeasures(Objective, Protocol):
 
     def measure(self, outcome: Outcome) -> Mapping[str, float]:
         """Return all measures of an *outcome* that did not diverge; finite."""
+
+
+@runtime_checkable
+class SupportsFitnessUnit(Credit, Protocol):
+    """A credit whose fitness does not have the unit of the scores."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the fitness; empty if it has none."""
 
 
 @runtime_checkable

@@ -1,6 +1,6 @@
 """The coevolution engine: populations, the loop, and the evaluation of designs; no input or output."""
 
-from evoframe.evolution.assembly import assemble, evaluator_of
+from evoframe.evolution.assembly import assemble, evaluator_of, population_of
 from evoframe.evolution.coevolution import Coevolution
 from evoframe.evolution.evaluation import Evaluator, score_designs
 from evoframe.evolution.meetings import first_meetings
@@ -15,6 +15,7 @@ __all__ = [
     "assemble",
     "evaluator_of",
     "first_meetings",
+    "population_of",
     "score_designs",
     "stream",
     "timing_of",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -18,7 +19,7 @@ from evoframe.evolution.randomness import stream
 from evoframe.evolution.roles import roles_of
 from evoframe.evolution.timing import timing_of
 
-__all__ = ["assemble", "evaluator_of"]
+__all__ = ["assemble", "evaluator_of", "population_of"]
 
 _NO_GENOMES: Mapping[str, Sequence[Any]] = MappingProxyType({})
 
@@ -35,7 +36,8 @@ def assemble(config: RunConfig, genomes: Mapping[str, Sequence[Any]] = _NO_GENOM
         ConfigurationError: A component cannot start, or an evolver cannot start with given genomes.
     """
     populations = tuple(_population(config, name, f"population/{name}") for name in config.populations)
-    for population in populations:
+    drafts = _drafts(config)
+    for population in itertools.chain(populations, *drafts.populations):
         if population.name in genomes:
             population.seed(genomes[population.name])
     return Coevolution(
@@ -51,7 +53,7 @@ def assemble(config: RunConfig, genomes: Mapping[str, Sequence[Any]] = _NO_GENOM
             }
         ),
         roles=roles_of(config, config.simulator.component),
-        drafts=_drafts(config),
+        drafts=drafts,
     )
 
 
@@ -72,6 +74,11 @@ def _drafts(config: RunConfig) -> Drafts:
 def _draw(name: str, number: int, draws: int) -> str:
     """Return the name of the random stream of a draw; a single one is that of the run itself."""
     return f"population/{name}/draw/{number}" if draws > 1 else f"population/{name}"
+
+
+def population_of(config: RunConfig, name: str) -> Population:
+    """Return a population of a configuration alone, such as to restore its state."""
+    return _population(config, name, f"population/{name}")
 
 
 def _population(config: RunConfig, name: str, random: str) -> Population:

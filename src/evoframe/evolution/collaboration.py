@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeGuard
@@ -107,7 +108,7 @@ class Collaboration:
         if not self.observes:
             return None
         with blaming(self.key, self._whose):
-            runs = {name: run.state() for name, run in self._runs.items()}
+            runs = {name: copy.deepcopy(run.state()) for name, run in self._runs.items()}
             json_text(runs)  # fails here, so that the strategy is named
         met = {
             name: [[key, list(collaborators)] for key, collaborators in met.items()]

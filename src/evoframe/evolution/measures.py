@@ -70,6 +70,8 @@ def _novelty(parts: Sequence[Sequence[NDArray[Any]]]) -> list[float]:
     The distance of two arrays is the share of different entries if they are discrete, and the mean absolute
     difference otherwise (novelty search, Lehman and Stanley 2011, without an archive).
     """
+    if len(parts) == 1:
+        return [0.0]
     apart = np.array([[sum(map(_distance, one, other)) for other in parts] for one in parts])
     nearest = np.sort(apart, axis=1)[:, 1 : _NEIGHBOURS + 1]
     return [math.fsum(row) / len(row) for row in nearest.tolist()]

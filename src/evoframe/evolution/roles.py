@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 
 from evoframe.contract import Design, RoleProvider, RoleRun, RunConfig, Simulator, blaming
-from evoframe.errors import ComponentError, ConfigurationError
+from evoframe.errors import ComponentError, ConfigurationError, InputError
 from evoframe.evolution.randomness import stream
 
 __all__ = ["Role", "Roles", "roles_of"]
@@ -126,7 +126,7 @@ def roles_of(config: RunConfig, simulator: Simulator) -> Roles:
         try:
             with blaming(key):
                 run = provider.start(simulator)
-        except ConfigurationError as error:
-            raise ConfigurationError(error.problem, key=key) from error
+        except (ConfigurationError, InputError) as error:
+            raise type(error)(error.problem, source=error.source, key=key) from error
         started.append(Role(name, provider, run, given.draw, config.run.seed))
     return Roles(tuple(started))

@@ -38,7 +38,7 @@ class Timing:
 
         Args:
             turn: Index of the turn, from 1.
-            clocks: Simulated time at which each population has finished its turns; of asynchronous ones.
+            clocks: Simulated time of the next turn of each population; of asynchronous ones.
         """
         if self.kind == "parallel":
             return tuple(range(len(self.weights)))
@@ -51,8 +51,8 @@ class Timing:
     ) -> tuple[float, ...]:
         """Return the clocks after a turn in which *reproduced* populations scored a number of *pairs*.
 
-        A pair takes an exponentially distributed time with mean 1, so that the order of turns is as irregular
-        as on a cluster, but depends only on the seed.
+        Until its next turn, a population is occupied for an exponentially distributed time with mean 1 for
+        each pair, so that the order of turns is as irregular as on a cluster, but depends only on the seed.
         """
         if self.kind != "asynchronous":
             return tuple(clocks)

@@ -10,7 +10,7 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract import RunConfig, SupportsVariants, Turn, unit_of
+from evoframe.contract import RunConfig, SupportsVariants, Turn, fitness_unit_of, unit_of
 from evoframe.designs import verify_designs
 from evoframe.errors import ComponentError, RunError
 from evoframe.evolution import Coevolution
@@ -77,8 +77,7 @@ class Execution:
         return verify_champion(self.config, run)
 
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
-        unit = unit_of(self.config.objective.component)
-        saving = _Saving(self._store, self._coevolution.state, observers, unit)
+        saving = _Saving(self._store, self._coevolution.state, observers, self.config)
         self._coevolution.on_simulating = saving.complete
         try:
             for turn in self._coevolution:
@@ -118,7 +117,7 @@ class _Saving:
     _store: Store
     _state: Callable[[Collection[str]], Mapping[str, Any]]
     _observers: Observers
-    _unit: str
+    _config: RunConfig
     _unsaved: Turn | None = None
 
     def begin(self, turn: Turn, reproducing_next: Collection[str]) -> None:
@@ -135,7 +134,7 @@ class _Saving:
         turn = self._unsaved
         self._unsaved = None  # even if it cannot be saved
         self._store.save(turn, self._state([report.population for report in turn.reports]))
-        _log_turn(turn, self._unit)
+        _log_turn(turn, self._config)
         self._observers.tell("evoframe_turn_finished", turn=turn)
 
 
@@ -162,10 +161,12 @@ def verify_champion(config: RunConfig, run: Run) -> Verification | None:
     return verification
 
 
-def _log_turn(turn: Turn, unit: str) -> None:
+def _log_turn(turn: Turn, config: RunConfig) -> None:
     if turn.best_pair is not None:
+        unit = unit_of(config.objective.component)
         _log.info("turn %d: new best pair, score %s", turn.index, quantity(turn.best_pair.score, unit))
     for report in turn.reports:
+        unit = fitness_unit_of(config, report.population)
         best, mean = quantity(report.best, unit), quantity(report.mean, unit)
         _log.debug("turn %d: %s: best fitness %s, mean %s", turn.index, report.population, best, mean)
 

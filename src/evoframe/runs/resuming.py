@@ -134,7 +134,8 @@ def _reopen(
     changes = _changes(run, config, allowed=allowed)
     if run.begun:
         run.read_all()
-    genomes = {} if run.begun else starting_genomes(config, plugins)
+    started = run.begun and run.last_turn() is not None
+    genomes = {} if started else starting_genomes(config, plugins)
     coevolution = assembled(config, genomes)
     try:
         if run.begun:

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from evoframe.contract import PopulationConfig, RunConfig
-from evoframe.errors import ConfigurationError
-from evoframe.evolution import assemble
+from evoframe.errors import ConfigurationError, EvoframeError
+from evoframe.evolution import population_of
 from evoframe.record import Run, open_run
 from evoframe.registry import Plugins
-from evoframe.runs.restoring import configuration_of, restore
+from evoframe.runs.restoring import configuration_of
 
 __all__ = ["starting_genomes"]
 
@@ -30,24 +30,33 @@ def starting_genomes(config: RunConfig, plugins: Plugins) -> dict[str, list[Any]
 
 
 def _genomes(name: str, population: PopulationConfig, plugins: Plugins) -> list[Any]:
-    start = population.start
-    wanted = start.population or name
-    with open_run(Path(start.run)) as run:
-        if wanted not in run.config["populations"]:
-            known = ", ".join(run.config["populations"])
-            raise ConfigurationError(
-                f"the run {start.run} has no population '{wanted}'; its populations: {known}",
-                key=f"populations.{name}.start.population",
-            )
-        if start.take == "champion":
-            return [run.champion().genomes[wanted]]
-        return _members(run, wanted, plugins)[: population.size]
+    key = f"populations.{name}.start"
+    try:
+        with open_run(Path(population.start.run)) as run:
+            return _genomes_of(run, population.start.population or name, population, plugins)
+    except ConfigurationError as error:
+        raise ConfigurationError(error.problem, source=error.source, key=error.key or key) from error
+    except EvoframeError as error:
+        problem = f"the run cannot be used: {error}; choose another"
+        raise ConfigurationError(problem, key=f"{key}.run") from error
 
 
-def _members(run: Run, wanted: str, plugins: Plugins) -> list[Any]:
-    """Return the genomes of a population at the end of a run, the fittest first."""
-    config = configuration_of(run, (), plugins)
-    with assemble(config) as coevolution:
-        restore(coevolution, run, config)
-        [found] = [population for population in coevolution.populations if population.name == wanted]
-        return [found.dump(position) for position in found.ranked()]
+def _genomes_of(run: Run, wanted: str, population: PopulationConfig, plugins: Plugins) -> list[Any]:
+    """Return the genomes of one population of a run.
+
+    Raises:
+        ConfigurationError: It has no such population, or no turn.
+        InputError: It is damaged.
+    """
+    if wanted not in run.config["populations"]:
+        known = ", ".join(run.config["populations"])
+        raise ConfigurationError(
+            f"the run {run.directory} has no population '{wanted}'; its populations: {known}"
+        )
+    if run.last_turn() is None or (population.start.take == "champion" and run.champion_document() is None):
+        raise ConfigurationError(f"the run {run.directory} has no individuals yet; resume it first")
+    if population.start.take == "champion":
+        return [run.champion().genomes[wanted]]
+    found = population_of(configuration_of(run, (), plugins), wanted)
+    found.restore(run.state()[f"population/{wanted}"])
+    return [found.dump(position) for position in found.ranked()[: population.size]]
