@@ -64,8 +64,9 @@ sanitize: $(VENV)/developing
 interpreters: $(VENV)/developing
 	PYTHON=$(BIN)/python tests/interpreters.sh $(PARALLEL)
 
-## kills: kill hundreds of workers while they start, on a quiet and on a busy computer
+## kills: kill hundreds of runs, and of workers while they start, on a quiet and on a busy computer
 kills: $(VENV)/developing
+	$(BIN)/python tests/survival/kills.py --kills 500
 	$(BIN)/python tests/survival/worker_kills.py --kills 400
 	$(BIN)/python tests/survival/worker_kills.py --kills 400 --seed 1000 --busy 2
 

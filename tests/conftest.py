@@ -9,6 +9,9 @@ import hypothesis
 
 pytest_plugins = ["toy_fixtures"]
 
+# Contract tests of third parties require their installed packages: tests/architecture runs them.
+collect_ignore = ["third_party"]
+
 # A background job of a shell ignores SIGINT, and so would the programs that tests start and interrupt.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -5,14 +5,16 @@ from .analysis.api import load_study as load_study, report as report
 from .analysis.statistics import Correction as Correction
 from .config.layers import Layer as Layer
 from .config.resolve import load_config as load_config
-from .contract.choosing import started as started
+from .contract.choosing import sizes_of as sizes_of, started as started
 from .contract.config import (
     ADDED_LATER as ADDED_LATER,
     Chosen as Chosen,
     PopulationConfig as PopulationConfig,
+    RoleConfig as RoleConfig,
     RunConfig as RunConfig,
     RunSettings as RunSettings,
     Source as Source,
+    StartSettings as StartSettings,
 )
 from .contract.drawings import (
     Geometry as Geometry,
@@ -30,6 +32,7 @@ from .contract.optional import (
     SupportsEach as SupportsEach,
     SupportsExemptions as SupportsExemptions,
     SupportsExport as SupportsExport,
+    SupportsFitnessUnit as SupportsFitnessUnit,
     SupportsGeometry as SupportsGeometry,
     SupportsGraph as SupportsGraph,
     SupportsInputNames as SupportsInputNames,
@@ -65,6 +68,8 @@ from .contract.protocols import (
     ExecutorRun as ExecutorRun,
     Network as Network,
     Objective as Objective,
+    RoleProvider as RoleProvider,
+    RoleRun as RoleRun,
     Simulator as Simulator,
 )
 from .contract.values import (

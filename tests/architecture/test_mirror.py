@@ -14,8 +14,9 @@ TESTS = ROOT / "tests"
 ELSEWHERE: Mapping[str, str] = {
     **{
         f"src/evoframe/testing/{kind}s.py": f"tests/testing/test_{kind}_contract.py"
-        for kind in ("aggregator", "encoder", "evolver", "executor", "objective", "simulator")
+        for kind in ("aggregator", "credit", "encoder", "evolver", "executor", "objective", "simulator")
     },
+    "src/evoframe/testing/roles.py": "tests/testing/test_role_contract.py",
     "src/evoframe/testing/strategies.py": "tests/testing/test_strategy_contract.py",
 }
 """Modules whose tests have another name: the contracts are tests, tested by violating them."""
@@ -24,6 +25,10 @@ UNTESTED: Mapping[str, str] = {
     "src/evoframe/analysis/api.py": "forwards calls; covered by tests of studies and reports",
     "src/evoframe/__main__.py": "starts the program; covered by tests of the command line",
     "src/evoframe/_version.py": "contains only a number",
+    "src/evoframe/runs/blame.py": "names components in errors; covered by tests of misbehaving components",
+    "src/evoframe/runs/restoring.py": "covered by tests of resuming, of the doctor and of warm starts",
+    "src/evoframe/testing/encounters.py": "simulated turns; covered by tests of the contract of strategies",
+    "src/evoframe/testing/evolving.py": "shared by the laws of evolvers; covered by their tests",
     "src/evoframe/testing/laws.py": "shared by contracts; covered by tests of all contracts",
 }
 """Modules without their own tests -> reason."""

@@ -4,29 +4,16 @@ from __future__ import annotations
 
 import functools
 import json
-import shutil
 from pathlib import Path
 
 import pytest
 from processes import Evoframe, python
-
-SOURCES = Path(__file__).parents[1] / "third_party"
-
-
-def install(name: str, target: Path) -> None:
-    source = target.parent / f"source-{name}"
-    shutil.copytree(SOURCES / name, source)  # building leaves files behind
-    options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--target", str(target)]
-    installed = python("-m", "pip", "install", *options, source)
-    assert installed.returncode == 0, installed.stderr
+from third_parties import installed
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    target = tmp_path_factory.mktemp("third-party") / "site"
-    for name in ("median", "broken"):
-        install(name, target)
-    return target
+    return installed(tmp_path_factory.mktemp("third-party"), "median", "broken")
 
 
 @pytest.fixture
@@ -36,11 +23,11 @@ def evoframe(site: Path, tmp_path: Path) -> Evoframe:
 
 def test_an_aggregator_is_selected_by_name(evoframe: Evoframe, tmp_path: Path) -> None:
     finished = evoframe(
-        "run", "quick", "--set", "aggregator=median", "--set", "run.generations=1", "--out", "here"
+        "run", "quick", "--set", "aggregator=middle", "--set", "run.generations=1", "--out", "here"
     )
     assert finished.returncode == 0, finished.stderr
     config = tmp_path.joinpath("here", "config.toml").read_text()
-    assert '[aggregator]\nname = "median"' in config
+    assert '[aggregator]\nname = "middle"' in config
     assert "aggregator = \"'median' of acme-median 2.1\"" in config
 
 
@@ -54,7 +41,7 @@ def test_a_plugin_that_fails_to_import_is_skipped_with_a_warning(evoframe: Evofr
 
 def test_the_list_of_plugins_shows_both(evoframe: Evoframe) -> None:
     listed = json.loads(evoframe("plugins", "list", "--json").stdout)
-    assert {"median"} == {c["name"] for c in listed["components"] if c["distribution"] == "acme-median"}
+    assert {"middle"} == {c["name"] for c in listed["components"] if c["distribution"] == "acme-median"}
     assert [skipped["distribution"] for skipped in listed["skipped"]] == ["acme-broken"]
     assert "acme-broken 0.3" in evoframe("plugins", "list").stdout
 
@@ -68,10 +55,10 @@ def test_an_unknown_name_is_answered_with_skipped_plugins(evoframe: Evoframe) ->
 
 def test_the_environment_blocks_and_requires_distributions(evoframe: Evoframe) -> None:
     blocked = evoframe(
-        "config", "show", "--set", "aggregator=median", EVOFRAME_PLUGINS_BLOCK="acme-median,acme-broken"
+        "config", "show", "--set", "aggregator=middle", EVOFRAME_PLUGINS_BLOCK="acme-median,acme-broken"
     )
     assert blocked.returncode == 2
-    assert "'median'" in blocked.stderr
+    assert "'middle'" in blocked.stderr
     assert "acme-broken" not in blocked.stderr
     required = evoframe("plugins", "list", EVOFRAME_PLUGINS_REQUIRE="acme-broken")
     assert required.returncode == 2
@@ -80,9 +67,9 @@ def test_the_environment_blocks_and_requires_distributions(evoframe: Evoframe) -
 
 def test_the_configuration_blocks_and_requires_distributions(evoframe: Evoframe) -> None:
     blocked = evoframe(
-        "config", "show", "--set", "aggregator=median", "--set", 'plugins.block=["acme-median"]'
+        "config", "show", "--set", "aggregator=middle", "--set", 'plugins.block=["acme-median"]'
     )
-    assert (blocked.returncode, "'median'" in blocked.stderr) == (2, True)
+    assert (blocked.returncode, "'middle'" in blocked.stderr) == (2, True)
     required = evoframe("config", "show", "--set", 'plugins.require=["acme-nothing"]')
     assert (required.returncode, "'acme-nothing'" in required.stderr) == (2, True)
     assert "plugins.require" in required.stderr

@@ -63,6 +63,14 @@ def test_without_variants_says_nothing_of_a_verification(evoframe: Evoframe, tmp
     assert (ran.returncode, "verify" in ran.stderr, "unchanged" in ran.stdout) == (0, False, False)
 
 
+def test_a_moving_champion_is_promised_only_with_a_geometry(evoframe: Evoframe) -> None:
+    drawn = evoframe("run", "quick", "--set", "run.generations=0", "--out", "drawn")
+    plain = evoframe("run", "functions", "--set", "run.generations=0", "--out", "plain")
+    assert (drawn.returncode, plain.returncode) == (0, 0)
+    assert "moving:\n  evoframe report drawn\n" in drawn.stderr
+    assert plain.stderr.endswith("\nNext, figures:\n  evoframe report plain\n")
+
+
 def test_a_verification_that_fails_is_an_error_after_the_summary(evoframe: Evoframe, tmp_path: Path) -> None:
     (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
     ran = evoframe(

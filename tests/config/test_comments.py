@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from toy_capabilities import VARIANTS
 
+from evoframe import RunConfig
 from evoframe.config import commented, load_config, preset_names, starter
 from evoframe.documents.trees import leaves
+from evoframe.registry.registry import Plugins
 
 
 @pytest.mark.parametrize("preset", preset_names())
@@ -34,6 +38,22 @@ def test_every_option_of_a_starter_can_be_set(tmp_path: Path) -> None:
     lines = starter(config, "paper").splitlines()
     path.write_text("\n".join(line.removeprefix("#") if line[1:2] != " " else line for line in lines))
     assert load_config(path).tables() == config.tables()
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_a_configuration_with_own_components_and_roles_means_the_same_with_comments(
+    toy_variant: Callable[..., RunConfig], toy_plugins: Plugins, tmp_path: Path, name: str
+) -> None:
+    config = toy_variant(name)
+    path = tmp_path / "commented.toml"
+    path.write_text(commented(config))
+    assert load_config(path, plugins=toy_plugins) == config
+    (tmp_path / "base.toml").write_text(config.to_toml())
+    path.write_text(starter(config, "base.toml"))
+    assert load_config(path, plugins=toy_plugins) == config
+    lines = starter(config, "base.toml").splitlines()
+    path.write_text("\n".join(line.removeprefix("#") if line[1:2] != " " else line for line in lines))
+    assert load_config(path, plugins=toy_plugins) == config
 
 
 def test_every_key_has_a_comment_above_it() -> None:

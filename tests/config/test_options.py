@@ -46,6 +46,7 @@ class Sample(Base):
         rule: A rule.
         limit: A limit, if set.
         shape: Size along x, y and z.
+        counts: Positive numbers.
         inner: A nested table.
     """
 
@@ -54,6 +55,7 @@ class Sample(Base):
     rule: str = attrs.field(default="max", validator=validators.in_(("max", "mean")))
     limit: float | None = attrs.field(default=None, validator=validators.optional(validators.gt(0.0)))
     shape: tuple[int, int, int] = (1, 2, 3)
+    counts: tuple[int, ...] = attrs.field(default=(1,), validator=validators.deep_iterable(validators.ge(1)))
     inner: Inner = Inner()
     undocumented: bool = False
 
@@ -67,6 +69,7 @@ class Sample(Base):
         ("rule", "A rule.", "text, one of max, mean"),
         ("limit", "A limit, if set.", "number, > 0"),
         ("shape", "Size along x, y and z.", "list of 3 values: whole number"),
+        ("counts", "Positive numbers.", "list: whole number, >= 1"),
         ("inner", "A nested table.", "table"),
         ("undocumented", "", "true or false"),
     ],

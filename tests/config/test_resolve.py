@@ -13,15 +13,17 @@ import pytest
 import tomli_w
 from hypothesis import given, strategies as st
 from modules import plugin
+from toy_capabilities import VARIANTS
 
 import evoframe
-from evoframe import ConfigurationError, RunConfig
+from evoframe import ConfigurationError, RunConfig, StructureError
 from evoframe.config.layers import layers_in, preset_names
-from evoframe.config.resolve import load_config, resolve_layers
+from evoframe.config.resolve import load_config, resolve_component, resolve_layers
 from evoframe.contract.config import Source
 from evoframe.registry.discovery import discover
 from evoframe.registry.registry import Plugins
 from evoframe_evolvers import Neat
+from evoframe_strategies import Sum, Worst
 
 Load = Callable[..., RunConfig]
 
@@ -103,7 +105,7 @@ FAULTS: list[tuple[str, str, list[str]]] = [
     ("simulator.limit=[1]", "simulator.limit", ["a number", "found [1]"]),
     ("aggregator=5", "aggregator", ["toy-mean", "'name'", "found 5"]),
     ("run.seed=-1", "run.seed", [">= 0", "found -1"]),
-    ("run.sede=1", "run.sede", ["unknown option", "'seed'", "options: seed, generations"]),
+    ("run.sede=1", "run.sede", ["unknown option", "'seed'", "options: seed, generations, timing"]),
     ("run=4", "run", ["a table", "found 4"]),
     ("agregator=5", "agregator", ["unknown key", "'aggregator'"]),
     ("populations.a.size=1", "populations.a.size", [">= 2", "found 1"]),
@@ -165,20 +167,25 @@ class TestFaults:
         assert (fault.source, fault.key) == (str(toy_file), "collaboration")
         assert all(part in fault.problem for part in ("30", "6 members", "population 'a'"))
 
-    def test_one_population_is_not_enough(self, toy_config: Load, toy_file: Path) -> None:
+    def test_a_population_of_the_base_can_be_left_out(self, toy_config: Load) -> None:
+        config = toy_config("populations.b=false", "simulator={name='toy-product'}")
+        assert list(config.populations) == ["a"]
+        assert "b" not in config.tables()["populations"]
+
+    def test_a_run_needs_a_population(self, toy_config: Load, toy_file: Path) -> None:
         text = toy_file.read_text()
-        start, end = text.index("[populations.b]"), text.index("[collaboration]")
+        start, end = text.index("[populations.a]"), text.index("[collaboration]")
         toy_file.write_text(text[:start] + text[end:])
-        [fault] = faults_of(toy_config)
+        fault = faults_of(toy_config)[0]
         assert (fault.source, fault.key) == (str(toy_file), "populations")
-        assert "found 1" in fault.problem
+        assert "found none" in fault.problem
 
 
 class TestRealComponents:
     @pytest.mark.parametrize(
         ("override", "key", "parts"),
         [
-            ("aggregator=wn", "aggregator", ["'wn'", "'wm'", "am, gm, hm, wm"]),
+            ("aggregator=wn", "aggregator", ["'wn'", "'wm'", "am, difference, gm"]),
             ("collaboration.n=4", "aggregator", ["4 collaborators", "2, 3, 5, 7, 10"]),
             ("collaboration.n=30", "collaboration", ["30", "25"]),
             ("simulator.step=1", "simulator.step", ["unknown option"]),
@@ -245,6 +252,20 @@ def test_any_configuration_survives_a_round_trip(
     assert tomli_w.dumps(again.tables()) == config.to_toml()
 
 
+@pytest.mark.parametrize("name", VARIANTS)
+def test_own_components_roles_and_nested_components_survive_a_round_trip(
+    toy_variant: Load, toy_plugins: Plugins, tmp_path: Path, name: str
+) -> None:
+    config = toy_variant(name)
+    path = tmp_path / "again.toml"
+    path.write_text(config.to_toml())
+    again = load_config(path, plugins=toy_plugins)
+    assert again == config
+    assert again.to_toml() == config.to_toml()
+    path.write_text(tomli_w.dumps(config.recorded()))
+    assert load_config(path, plugins=toy_plugins) == config
+
+
 @attrs.define
 class Changeable:
     domain = (-1e100, 1e100)
@@ -285,3 +306,26 @@ def test_a_run_of_a_local_plugin_names_the_option_that_loads_it(installed: Plugi
         resolve_layers(layers_in(tables, "config.toml"), "quick", installed)
     [hint] = caught.value.__notes__
     assert "-p PATH/mine.py" in hint
+
+
+class TestComponentsOnTheirOwn:
+    """``resolve_component``, with which contracts read the options of a component."""
+
+    def test_components_among_the_options_are_chosen(self) -> None:
+        table = {"parts": ["random", {"name": "sum", "parts": [{"name": "worst", "n": 3}]}]}
+        combined = resolve_component(table, Sum, ("component",))
+        assert [part.name for part in combined.parts] == ["random", "sum"]
+        [inner] = combined.parts[1].component.parts  # type: ignore[attr-defined]
+        assert inner.component == Worst(n=3)
+        assert inner.source.entry_point == "strategies"
+
+    def test_all_faults_are_reported_with_their_paths(self) -> None:
+        table = {"parts": [{"name": "random", "n": 0}, "nobody"]}
+        with pytest.raises(StructureError) as refused:
+            resolve_component(table, Sum, ("component",))
+        paths = [".".join(fault.path) for fault in refused.value.faults]
+        assert paths == ["component.parts[0].n", "component.parts[1]"]
+
+    def test_plugins_are_loaded_only_for_them(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("evoframe.config.resolve.discover", lambda: pytest.fail("loaded plugins"))
+        assert resolve_component({"n": 4}, Worst, ("component",)) == Worst(n=4)

@@ -13,7 +13,7 @@ import toys
 from hypothesis import given, strategies as st
 
 from evoframe import ADDED_LATER, Chosen, RunConfig, RunSettings, Source
-from evoframe.contract.config import COMPONENTS, POPULATION_COMPONENTS, is_role
+from evoframe.contract.config import COMPONENTS, is_role
 
 Load = Callable[..., RunConfig]
 
@@ -40,7 +40,7 @@ def test_every_option_is_written(toy_config: Load) -> None:
 def test_components_come_with_their_keys_populations_first(toy_config: Load) -> None:
     config = toy_config()
     keys = [key for key, _ in config.components()]
-    roles = [f"populations.{role}.{key}" for role in "ab" for key in POPULATION_COMPONENTS]
+    roles = [f"populations.{role}.{key}" for role in "ab" for key in ("encoder", "evolver")]
     assert keys == [*roles, *COMPONENTS]
     assert dict(config.components())["simulator"] is config.simulator
 
@@ -76,6 +76,88 @@ def test_an_option_added_later_counts_only_if_it_differs_from_its_default(toy_co
     assert grown(strength=2.0).simulation()["simulator"]["strength"] == 2.0
 
 
+def test_an_earlier_configuration_is_recorded_as_before(toy_config: Load) -> None:
+    """Options that are newer than the record of a run are left out while they have their defaults."""
+    recorded = toy_config().recorded()
+    assert recorded["run"] == {"seed": 3, "generations": 4}
+    for population in recorded["populations"].values():
+        assert population.keys() == {"size", "encoder", "evolver"}
+    assert recorded.keys() == {"extends", "run", "populations", "plugins", *COMPONENTS}
+
+
+@pytest.mark.parametrize(
+    ("override", "path", "value"),
+    [
+        ("run.timing=parallel", ("run", "timing"), "parallel"),
+        ("populations.a.goal=minimize", ("populations", "a", "goal"), "minimize"),
+        ("populations.b.turns=2", ("populations", "b", "turns"), 2),
+        (
+            "populations.b.aggregator=toy-share",
+            ("populations", "b", "aggregator"),
+            {"name": "toy-share"},
+        ),
+        (
+            "populations.b.collaboration.name=toy-first",
+            ("populations", "b", "collaboration"),
+            {"name": "toy-first", "n": 2},
+        ),
+        (
+            "roles.r.provider=toy-random",
+            ("roles", "r"),
+            {"provider": {"name": "toy-random", "role": "r", "value": 2.0, "needs": []}, "draw": "run"},
+        ),
+    ],
+)
+def test_newer_options_determine_the_result_if_they_are_used(
+    toy_config: Load, override: str, path: tuple[str, ...], value: Any
+) -> None:
+    found: Any = toy_config(override).deciding()
+    assert found != toy_config().deciding()
+    for key in path:
+        found = found[key]
+    assert found == value
+
+
+class TestComponentsOfPopulations:
+    def test_replace_those_of_the_run(self, toy_config: Load) -> None:
+        config = toy_config("populations.b.aggregator=toy-share", "populations.a.collaboration=toy-last")
+        assert config.chosen_for("a", "aggregator") == ("aggregator", config.aggregator)
+        key, chosen = config.chosen_for("b", "aggregator")
+        assert (key, chosen.component) == ("populations.b.aggregator", toys.Share())
+        key, chosen = config.chosen_for("a", "collaboration")
+        assert (key, chosen.component) == ("populations.a.collaboration", toys.Last())
+        assert config.chosen_for("b", "collaboration") == ("collaboration", config.collaboration)
+
+    def test_are_listed_with_their_keys(self, toy_config: Load) -> None:
+        config = toy_config("populations.b.aggregator=toy-share", "roles.r.provider=toy-random")
+        keys = [key for key, _ in config.components()]
+        added = {"populations.b.aggregator", "roles.r.provider"}
+        assert set(keys) - {key for key, _ in toy_config().components()} == added
+        assert len(keys) == len(set(keys))
+
+
+class TestNestedComponents:
+    outer = "collaboration={name='toy-outer', inner={name='toy-first', n=1}, more=['toy-last', 'toy-drawn']}"
+
+    def test_are_listed_with_their_keys(self, toy_config: Load) -> None:
+        components = dict(toy_config(self.outer).components())
+        assert [key for key in components if key.startswith("collaboration")] == [
+            "collaboration",
+            "collaboration.inner",
+            "collaboration.more[0]",
+            "collaboration.more[1]",
+        ]
+        assert components["collaboration.inner"].component == toys.First(n=1)
+        assert components["collaboration.more[1]"].name == "toy-drawn"
+
+    def test_are_written_as_tables(self, toy_config: Load) -> None:
+        assert toy_config(self.outer).tables()["collaboration"] == {
+            "name": "toy-outer",
+            "inner": {"name": "toy-first", "n": 1},
+            "more": [{"name": "toy-last"}, {"name": "toy-drawn"}],
+        }
+
+
 def test_deciding_tables_are_json_values(toy_config: Load) -> None:
     deciding = toy_config("populations.b.encoder.needs=['a']").deciding()
     assert json.loads(json.dumps(deciding)) == deciding
@@ -94,7 +176,7 @@ def test_the_simulation_depends_on_simulator_and_objective(toy_config: Load) -> 
 
 
 @pytest.mark.parametrize("settings", [{"seed": -1}, {"generations": -1}])
-def test_neither_seed_nor_length_is_negative(settings: dict[str, int]) -> None:
+def test_neither_seed_nor_length_is_negative(settings: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=f"'{next(iter(settings))}'.*-1"):
         RunSettings(**settings)
 

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import pytest
+import toy_capabilities as caps
 import toys
 
 import evoframe
@@ -24,8 +25,13 @@ from evoframe.contract.optional import (
     SupportsWholeDesigns,
     SupportsWindow,
     Variant,
+    array_types_of,
+    batch_size_of,
     bit_generation_of,
+    measures_of_designs,
+    measures_of_simulations,
     unit_of,
+    wanted_by,
     whole_of,
     window_of,
 )
@@ -133,3 +139,28 @@ def test_variants_are_compared_by_identity() -> None:
     design = evoframe.Design({"a": np.ones(2)})
     first, second = (Variant("a", toys.Product(), design, toys.Value.record) for _ in range(2))
     assert first != second
+
+
+def test_measures_are_those_that_components_declare() -> None:
+    assert wanted_by(toys.Drift()) == ()
+    assert wanted_by(caps.Wanting(wants=("age", "energy"))) == ("age", "energy")
+    assert measures_of_designs(toys.Number()) == ()
+    assert measures_of_designs(caps.Typed("a")) == ("size-of-a",)
+    assert measures_of_simulations(toys.Product(), toys.Value()) == ()
+    assert measures_of_simulations(caps.Measuring(), caps.Second()) == ("energy", "smallness")
+
+
+def test_array_types_and_batch_sizes_are_optional() -> None:
+    assert array_types_of(toys.Number()) == {}
+    one = evoframe.ArrayType("float64", (1,))
+    assert array_types_of(caps.Typed("a", needs=("b",))) == {"a": one, "b": one}
+    assert batch_size_of(toys.Product(), 12) == 12
+    assert batch_size_of(caps.Measuring(), 12) == 2
+
+
+def test_the_toys_have_the_capabilities_that_their_tests_are_about() -> None:
+    assert isinstance(caps.Archiving(), evoframe.SupportsMemory)
+    assert isinstance(caps.Loyal(), evoframe.SupportsEach)
+    assert isinstance(caps.Alternating(), evoframe.SupportsSizes)
+    assert isinstance(caps.WantingRun(0.1, 2, np.random.default_rng(0)), evoframe.SupportsSeeds)
+    assert not isinstance(toys.DriftRun(0.1, 2, np.random.default_rng(0)), evoframe.SupportsLoad)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import toy_capabilities
 import toys
 
 import evoframe
@@ -14,13 +15,17 @@ from evoframe.contract import protocols
 
 COMPONENTS: dict[str, Any] = {
     "Aggregator": toys.Mean(),
+    "CollaborationRun": evoframe.started(toys.First(), "a", "b"),
     "CollaborationStrategy": toys.First(),
+    "Credit": toys.Share(),
     "Encoder": toys.Number(),
     "Evolver": toys.Drift(),
     "EvolverRun": toys.Drift().start(1, 1, 4, np.random.default_rng(0)),
     "Executor": toys.Here(),
     "ExecutorRun": toys.Here().start(),
     "Objective": toys.Value(),
+    "RoleProvider": toy_capabilities.Constant(),
+    "RoleRun": toy_capabilities.Constant().start(toys.Product()),
     "Simulator": toys.Product(),
 }
 

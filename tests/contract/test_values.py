@@ -12,7 +12,20 @@ from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from numpy.typing import NDArray
 
-from evoframe import Design, Member, Outcome, Pair, Record, RunConfig, Score, Turn, Workload, assemble
+from evoframe import (
+    ArrayType,
+    Design,
+    Member,
+    Outcome,
+    Pair,
+    Record,
+    RunConfig,
+    Score,
+    ScoredMeetings,
+    Turn,
+    Workload,
+    assemble,
+)
 from evoframe.contract import values
 
 numbers = arrays(st.sampled_from(["uint8", "float64"]), array_shapes(max_dims=3, max_side=3))
@@ -64,7 +77,7 @@ def test_turns_are_compared_without_their_workload() -> None:
     assert attrs.evolve(turn, pairs=(Pair((1, 2), 0.25),)) != turn
 
 
-@pytest.mark.parametrize("name", [name for name in values.__all__ if name != "Scores"])
+@pytest.mark.parametrize("name", [name for name in values.__all__ if name not in ("Choice", "Scores")])
 def test_values_cannot_be_changed(name: str) -> None:
     assert attrs.inspect(getattr(values, name)).is_frozen
 
@@ -85,3 +98,48 @@ def test_values_with_arrays_and_members_print_in_a_few_lines(toy_config: Callabl
     assert str(Design({"morphology": np.zeros((20, 8, 8), np.uint8)})) == (
         "Design(roles=morphology: uint8[20, 8, 8])"
     )
+
+
+lengths = st.lists(st.none() | st.integers(0, 3), max_size=3).map(tuple)
+types = st.builds(ArrayType, dtype=st.sampled_from(["uint8", "float64"]), shape=lengths)
+
+
+class TestArrayTypes:
+    @given(numbers)
+    def test_of_an_array_accept_it(self, array: NDArray[Any]) -> None:
+        own = ArrayType.of(array)
+        assert own.accepts(own)
+        assert ArrayType(own.dtype, (None,) * array.ndim).accepts(own)
+        assert not ArrayType("int16", own.shape).accepts(own)
+        assert not ArrayType(own.dtype, (*own.shape, None)).accepts(own)
+
+    @given(types, types)
+    def test_accept_each_other_if_an_array_can_have_both(self, one: ArrayType, other: ArrayType) -> None:
+        assert one.accepts(other) == other.accepts(one)
+        if one.accepts(other):
+            both = zip(one.shape, other.shape, strict=True)
+            shape = tuple(next((each for each in pair if each is not None), 1) for pair in both)
+            there = ArrayType.of(np.zeros(shape, one.dtype))
+            assert one.accepts(there)
+            assert other.accepts(there)
+
+    def test_are_written_with_the_lengths_of_their_axes(self) -> None:
+        assert str(ArrayType("uint8", (20, None, 8))) == "uint8[20, any, 8]"
+        assert str(ArrayType("float64", ())) == "float64[]"
+        assert str(ArrayType.of(np.zeros((2, 3)))) == "float64[2, 3]"
+
+
+class TestScoredMeetings:
+    def test_of_a_population_are_grouped_by_member_and_leave_archived_ones_out(self) -> None:
+        members = tuple(Member(i, 0.5) for i in range(3))
+        meetings = np.array([[2, 0], [0, 0], [2, 1], [0, 1]], dtype=np.intp)
+        seen = ScoredMeetings(3, ("a", "b"), (members, members), (2, 1), meetings, np.arange(4.0))
+        assert [rows.tolist() for rows in seen.of(0)] == [[1, 3], []]
+        assert [rows.tolist() for rows in seen.of(1)] == [[0, 1]]
+
+    def test_print_in_a_line(self) -> None:
+        meetings = np.zeros((500, 2), dtype=np.intp)
+        members = (tuple(Member(i, None) for i in range(25)), (Member(0, None),))
+        text = str(ScoredMeetings(3, ("a", "b"), members, (25, 1), meetings, np.zeros(500)))
+        assert "members=[25, 1]" in text
+        assert len(text) < 200

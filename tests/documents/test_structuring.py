@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Generic, Literal, TypeVar
 
 import attrs
 import numpy as np
@@ -10,6 +10,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 from evoframe.documents.structuring import StructureError, option_names, structure, unstructure
+
+T = TypeVar("T")
 
 
 @attrs.frozen
@@ -47,6 +49,21 @@ carts = st.builds(Cart, front=wheels, others=st.lists(wheels, max_size=3).map(tu
 @given(carts)
 def test_unstructured_values_are_structured_to_the_same(cart: Cart) -> None:
     assert structure(unstructure(cart), Cart, ("cart",)) == cart
+
+
+@attrs.frozen
+class Harness(Generic[T]):
+    name: str
+    wheel: T
+
+    def as_table(self) -> dict[str, Any]:
+        return {"name": self.name, **unstructure(self.wheel)}
+
+
+@attrs.frozen
+class Pulled:
+    by: Harness[Wheel]
+    more: tuple[Harness[Wheel], ...] = ()
 
 
 @attrs.frozen
@@ -124,3 +141,77 @@ def test_numpy_numbers_are_accepted_and_none_is_left_out() -> None:
     load = structure({"name": "a", "sizes": np.array([1, 2]), "weight": np.float32(2.5)}, Load, ("load",))
     assert load == Load("a", sizes=(1, 2), weight=2.5)
     assert unstructure(Load("a")) == {"name": "a", "sort": "grain", "heavy": False, "weight": 1.0}
+
+
+@attrs.frozen
+class Ticket:
+    seats: tuple[int, ...] | Literal["window", "aisle"] | None = None
+    price: float | Literal["free"] = "free"
+    load: tuple[int, int] | Load | str = ""
+
+
+@pytest.mark.parametrize(
+    "ticket",
+    [
+        Ticket(),
+        Ticket(seats=()),
+        Ticket(seats=(1, 2), price=3.5, load="coal"),
+        Ticket(seats="aisle", price="free", load=Load("coal")),
+        Ticket(load=(1, 2)),
+    ],
+    ids=str,
+)
+def test_an_option_can_have_one_of_several_types(ticket: Ticket) -> None:
+    assert structure(unstructure(ticket), Ticket, ("ticket",)) == ticket
+
+
+def test_one_of_several_types_can_be_none() -> None:
+    assert structure({"seats": None}, Ticket, ("ticket",)) == Ticket()
+    with pytest.raises(StructureError, match="found null"):
+        structure({"price": None}, Ticket, ("ticket",))
+
+
+@pytest.mark.parametrize(
+    ("table", "path", "message"),
+    [
+        ({"seats": 3}, "ticket.seats", 'expected a list or one of "window", "aisle", found 3'),
+        ({"seats": "roof"}, "ticket.seats", 'expected a list or one of "window", "aisle", found "roof"'),
+        ({"seats": [1, 2.5]}, "ticket.seats[1]", "expected a whole number, found 2.5"),
+        ({"price": True}, "ticket.price", 'expected a number or one of "free", found true'),
+        ({"load": 3}, "ticket.load", "expected a list or a table or a string, found 3"),
+        ({"load": [1, 2, 3]}, "ticket.load", "expected a list or a table or a string, found [1, 2, 3]"),
+        ({"load": {}}, "ticket.load.name", "is missing"),
+    ],
+)
+def test_a_fault_names_all_types_or_the_place_inside(table: Any, path: str, message: str) -> None:
+    with pytest.raises(StructureError) as refused:
+        structure(table, Ticket, ("ticket",))
+    [fault] = refused.value.faults
+    assert (".".join(fault.path), fault.message) == (path, message)
+
+
+class TestValuesOfOthers:
+    """Instances of generic classes, which are created elsewhere, and which write themselves."""
+
+    cart = Pulled(Harness("rope", Wheel(1.0)), (Harness("chain", Wheel(2.0)),))
+
+    def test_are_written_as_their_tables(self) -> None:
+        assert unstructure(self.cart) == {
+            "by": {"name": "rope", "radius": 1.0, "spokes": 32},
+            "more": [{"name": "chain", "radius": 2.0, "spokes": 32}],
+        }
+
+    def test_are_kept(self) -> None:
+        given = {"by": self.cart.by, "more": list(self.cart.more)}
+        assert structure(given, Pulled, ("cart",)) == self.cart
+
+    @pytest.mark.parametrize(
+        ("table", "place"),
+        [({"by": {"name": "rope"}}, "cart.by"), ({"by": cart.by, "more": ["rope"]}, "cart.more[0]")],
+    )
+    def test_cannot_be_created_from_tables(self, table: Any, place: str) -> None:
+        with pytest.raises(StructureError) as refused:
+            structure(table, Pulled, ("cart",))
+        [fault] = refused.value.faults
+        assert ".".join(fault.path) == place
+        assert "a table with the key 'name'" in fault.message

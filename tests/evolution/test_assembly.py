@@ -19,11 +19,12 @@ def test_components_are_those_of_the_configuration(toy_config: Load) -> None:
     config = toy_config()
     coevolution = assemble(config)
     assert isinstance(coevolution, Coevolution)
-    assert coevolution.strategy is config.collaboration.component
-    assert coevolution.aggregator is config.aggregator.component
+    for collaboration, judge in zip(coevolution.collaborations, coevolution.judges, strict=True):
+        assert collaboration.strategy is config.collaboration.component
+        assert judge.aggregator is config.aggregator.component
     assert coevolution.evaluator.simulator is config.simulator.component
     assert coevolution.evaluator.objective is config.objective.component
-    assert (coevolution.generations, coevolution.turn) == (4, -1)
+    assert (coevolution.length, coevolution.turn) == (8, -1)
 
 
 def test_populations_keep_their_order_and_size(toy_config: Load) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+import toy_capabilities as caps
 import toys
 from hypothesis import given, strategies as st
 from processes import LIMIT
@@ -119,7 +120,7 @@ def test_batches_keep_the_order_and_shrink_towards_the_end(count: int, workers: 
     sizes = [len(batch) for batch in batches]
     assert [a for batch in batches for a in batch] == list(range(count))
     assert sizes == sorted(sizes, reverse=True)
-    assert max(sizes, default=1) <= 12
+    assert max(sizes, default=1) <= 4
     assert sizes[-1:] in ([], [1])
 
 
@@ -135,7 +136,7 @@ class TestMeanwhile:
         scorer = evaluator(Counting(), workers=2)
         scores = scorer.evaluate(designs(), 100, lambda: seen.append(len(made)))
         scorer.close()
-        assert seen == [3 * 12]  # three batches: two for the other worker, and one more
+        assert seen == [3 * 4]  # three batches: two for the other worker, and one more
         assert [score.value for score in scores] == list(range(100))
 
     @pytest.mark.parametrize("workers", [1, 3])
@@ -158,7 +159,7 @@ class TestMeanwhile:
         with pytest.raises(type(error)) as caught:
             scorer.evaluate((design(a, 1) for a in range(100)), 100, fail)
         assert caught.value is error
-        assert len(counting.simulated) <= 3 * 12
+        assert len(counting.simulated) <= 3 * 4
         scorer.close()
 
 
@@ -172,3 +173,61 @@ def test_a_score_that_is_not_a_number_stops_the_run() -> None:
     with pytest.raises(ComponentError, match="score nan") as caught:
         attrs.evolve(evaluator(Counting()), objective=Undefined()).evaluate([design(1, 1)], 1)
     assert caught.value.component == "objective"
+
+
+class TestMeasures:
+    @staticmethod
+    def scored(*measures: str, limit: float = 1e9) -> list[Any]:
+        scorer = Evaluator(caps.Measuring(limit), caps.Second(), toys.Here(), measures)
+        return scorer.evaluate([design(2, -3), design(1, 1)], 2)
+
+    def test_are_part_of_scores_if_they_are_wanted(self) -> None:
+        first, second = self.scored("energy", "smallness")
+        assert first.measures == {"energy": 13.0, "smallness": -6.0}
+        assert second.measures == {"energy": 2.0, "smallness": -1.0}
+        assert self.scored("smallness")[0].measures == {"smallness": -6.0}
+        assert self.scored()[0].measures == {}
+
+    def test_are_missing_from_diverged_simulations(self) -> None:
+        diverged, good = self.scored("energy", "smallness", limit=2.5)
+        assert (diverged.value, diverged.measures) == (None, {})
+        assert good.measures == {"energy": 2.0, "smallness": -1.0}
+
+    def test_are_kept_with_the_score(self) -> None:
+        scorer = Evaluator(caps.Measuring(), caps.Second(), toys.Here(), ("energy",))
+        first, again = (scorer.evaluate([design(2, 3)], 1)[0] for _ in range(2))
+        assert scorer.simulations == 1
+        assert first.measures == again.measures == {"energy": 13.0}
+
+    def test_of_the_objective_are_asked_for_only_if_one_is_wanted(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(caps.Second, "measure", lambda *_: pytest.fail("not wanted"))
+        assert self.scored()[0].value == -6.0
+
+
+@given(st.integers(0, 40), st.integers(1, 15), st.sampled_from([1, 3]))
+def test_a_simulator_can_limit_the_size_of_batches(count: int, largest: int, workers: int) -> None:
+    sizes: list[int] = []
+
+    @attrs.define
+    class Limited(Counting):
+        batch_size: int = largest
+        requires: Any = ()
+        tracks: Any = ("value",)
+
+        def check(self, record: Record) -> None:
+            pass
+
+        def simulate(self, designs: Sequence[Design], record: Record) -> Sequence[Outcome]:
+            with self.lock:
+                sizes.append(len(designs))
+            return super().simulate(designs, record)
+
+    scorer = evaluator(Limited(), workers)
+    scorer.evaluate((design(a, 1) for a in range(count)), count)
+    scorer.close()
+    assert sum(sizes) == count
+    assert max(sizes, default=0) <= largest
+    if (count - largest) // workers >= largest:
+        assert max(sizes) == largest

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import toy_capabilities as caps
 import toys
 from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
-from evoframe import Design, Member, Network, PopulationReport, RunError, StructureError
+from evoframe import Archived, Design, Member, Network, PopulationReport, RunError, StructureError
 from evoframe.errors import ComponentError
 from evoframe.evolution.population import Population
 
@@ -254,3 +255,126 @@ def test_a_population_without_fitness_has_no_report() -> None:
 def test_no_fitness_can_be_assigned_if_all_simulations_diverged() -> None:
     with pytest.raises(RunError, match="diverged"):
         new_population().judge([None] * 4, None)
+
+
+def test_an_error_of_a_network_is_attributed_to_the_evolver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The encoder calls it while decoding."""
+
+    def network(_: NDArray[np.float64]) -> NDArray[np.float64]:
+        raise ZeroDivisionError("no weights")
+
+    monkeypatch.setattr(toys.DriftRun, "express", lambda *_: network)
+    with pytest.raises(ComponentError, match="ZeroDivisionError: no weights") as caught:
+        new_population().decode(2, Design())
+    assert (caught.value.component, caught.value.concerns) == ("populations.a.evolver", "a 3")
+
+
+class TestArrayTypes:
+    def typed(self, **options: Any) -> Population:
+        encoder, rng = caps.Typed("a", **options), np.random.default_rng(0)
+        population = Population("a", encoder, toys.Drift().start(1, 1, 4, rng), np.random.default_rng(1))
+        population.reproduce()
+        return population
+
+    def test_that_fit_are_accepted(self) -> None:
+        assert self.typed().decode(0, Design()).roles["a"].shape == (1,)
+        assert self.typed(needs=("b",)).decode(0, Design({"b": np.ones(1)})).roles.keys() == {"a", "b"}
+
+    @pytest.mark.parametrize(
+        ("options", "design", "problem"),
+        [
+            ({"dtype": "uint8"}, Design(), "provided float64[1] for the role 'a', expected uint8[1]"),
+            ({"length": 2}, Design(), "provided float64[1] for the role 'a', expected float64[2]"),
+            (
+                {"needs": ("b",)},
+                Design({"b": np.ones((1, 1))}),
+                "received float64[1, 1] for the role 'b', expected float64[1]",
+            ),
+        ],
+    )
+    def test_that_do_not_fit_are_attributed_to_the_encoder(
+        self, options: dict[str, Any], design: Design, problem: str
+    ) -> None:
+        with pytest.raises(ComponentError) as caught:
+            self.typed(**options).decode(1, design)
+        assert caught.value.problem == problem
+        assert (caught.value.component, caught.value.concerns) == ("populations.a.encoder", "a 2")
+
+
+class TestCandidates:
+    def test_are_the_members_unless_all_populations_reproduce(self) -> None:
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        population.reproduce()
+        assert population.candidates is population.members
+
+    def test_are_the_generation_before_if_all_populations_reproduce(self) -> None:
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        before, genomes = population.members, list(population.genomes)
+        population.reproduce(keep_candidates=True)
+        assert population.candidates == before
+        assert [member.fitness for member in population.candidates] == [1.0, 2.0, 3.0, 4.0]
+        assert [member.id for member in population.members] == [4, 3, 5, 6]
+        assert population.admit(3) == 0  # it has survived
+        assert population.admit(0) == population.admit(0) == 4
+        assert population.dump(4) == genomes[0]
+        assert population.decode(4, Design()).roles["a"][0] == genomes[0]
+        assert population.present == (*population.members, before[0])
+        population.begin_turn()
+        assert population.candidates is population.members
+        assert population.present == population.members
+
+    def test_networks_of_guests_are_not_kept_for_the_next_ones(self) -> None:
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        genomes = list(population.genomes)
+        population.reproduce(keep_candidates=True)
+        population.admit(0)
+        assert population.decode(4, Design()).roles["a"][0] == genomes[0]
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        population.begin_turn()
+        last = list(population.genomes)
+        population.reproduce(keep_candidates=True)
+        assert population.admit(0) == 4
+        assert population.decode(4, Design()).roles["a"][0] == last[0]
+
+    def test_guests_of_a_population_that_does_not_reproduce_are_replaced_in_the_next_turn(self) -> None:
+        rng = np.random.default_rng(0)
+        population = Population("a", toys.Number(), caps.Wanting().start(1, 1, 4, rng), rng)
+        population.reproduce()
+        for key, genome in ((50, 0.5), (60, 0.25)):
+            population.begin_turn()
+            assert population.admit(Archived(Member(id=key, fitness=1.0), genome)) == 4
+            assert population.decode(4, Design()).roles["a"][0] == genome
+
+    def test_are_discarded_when_a_state_is_restored(self) -> None:
+        population = new_population()
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        population.reproduce(keep_candidates=True)
+        population.admit(0)
+        population.judge([1.0, 2.0, 3.0, 4.0], None)
+        population.restore(json.loads(json.dumps(population.state())))
+        assert population.candidates == population.present == population.members
+
+
+class TestMeasures:
+    def test_are_told_to_the_evolver_with_the_lowest_for_diverged_individuals(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        told: list[dict[str, list[float]]] = []
+        monkeypatch.setattr(
+            toys.DriftRun,
+            "tell",
+            lambda _, fitness, measures: told.append(
+                {name: each.tolist() for name, each in measures.items()}
+            ),
+        )
+        population = new_population()
+        population.judge([1.0] * 4, None, {"x": [3.0, None, 2.0, None], "y": [None] * 4, "z": [1, 2, 3, 4]})
+        assert told == [{"x": [3.0, 2.0, 2.0, 2.0], "y": [0.0] * 4, "z": [1.0, 2.0, 3.0, 4.0]}]
+
+    def test_are_part_of_the_report(self) -> None:
+        population = new_population()
+        population.judge([1.0] * 4, None, {"x": [3.0, None, 2.0, 5.0]})
+        assert population.report().measures == {"x": (3.0, 2.0, 2.0, 5.0)}

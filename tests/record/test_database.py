@@ -141,15 +141,15 @@ class TestRefusal:
     @pytest.mark.parametrize(
         ("statements", "found"),
         [
-            (["DROP TABLE meta", "CREATE VIEW meta AS SELECT 'format' AS key, '2' AS value"], "none"),
-            (["UPDATE meta SET value = '1' WHERE key = 'format'"], "'1'"),
+            (["DROP TABLE meta", "CREATE VIEW meta AS SELECT 'format' AS key, '3' AS value"], "none"),
+            (["UPDATE meta SET value = '2' WHERE key = 'format'"], "'2'"),
         ],
     )
     def test_of_a_different_format(
         self, opened: Open, directory: Path, statements: list[str], found: str
     ) -> None:
         changed(directory, *statements)
-        with pytest.raises(InputError, match=f"2, found {found};") as caught:
+        with pytest.raises(InputError, match=f"3, found {found};") as caught:
             opened().refuse_another(CONFIG)
         assert (caught.value.source, caught.value.key) == (str(directory / "run.db"), "meta.format")
 

@@ -53,7 +53,7 @@ class TestRefusal:
         finished = run(toy_config(), out=tmp_path / "run")
         with contextlib.closing(sqlite3.connect(finished.directory / "run.db")) as database, database:
             database.execute("UPDATE meta SET value = '99' WHERE key = 'format'")
-        with pytest.raises(InputError, match=r"2, found '99';") as caught:
+        with pytest.raises(InputError, match=r"3, found '99';") as caught:
             load_run(finished.directory)
         assert (caught.value.source, caught.value.key) == (str(finished.directory / "run.db"), "meta.format")
 

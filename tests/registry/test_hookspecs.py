@@ -33,10 +33,11 @@ def test_each_documents_its_arguments_and_its_version(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_hook_of_components_returns_a_mapping_to_classes_of_its_protocol(kind: str) -> None:
+def test_a_hook_of_components_returns_a_mapping_to_classes_of_its_protocols(kind: str) -> None:
     signature = inspect.signature(HOOKS[KINDS[kind].hook])
     assert not signature.parameters
-    assert signature.return_annotation == f"Mapping[str, type[{KINDS[kind].protocol.__name__}]]"
+    protocols = " | ".join(each.__name__ for each in (KINDS[kind].protocol, *KINDS[kind].others))
+    assert signature.return_annotation == f"Mapping[str, type[{protocols}]]"
 
 
 def test_a_plugin_may_take_fewer_arguments_but_no_others() -> None:

@@ -10,8 +10,9 @@ import toys
 from modules import plugin
 
 from evoframe import ConfigurationError, PluginError, hookimpl
+from evoframe.contract import Aggregator, Credit, RoleProvider, RoleRun
 from evoframe.contract.config import Source
-from evoframe.registry.registry import Plugins
+from evoframe.registry.registry import KINDS, Plugins, kind_of
 
 HERE = Source("here", "1.0", "main")
 
@@ -33,6 +34,7 @@ class TestRegistry:
             ("aggregator", "toy-last", "collaboration=toy-last"),
             ("strategy", "toy-mean", "aggregator=toy-mean"),
             ("simulator", "toy-drift", "populations.ROLE.evolver=toy-drift"),
+            ("strategy", "toy-random", "roles.NAME.provider=toy-random"),
         ],
     )
     def test_a_name_of_another_kind_is_answered_with_its_key(
@@ -97,4 +99,24 @@ class TestRegistry:
 
     def test_blocked_distributions_are_left_out(self, toy_plugins: Plugins) -> None:
         assert toy_plugins.without(["toy-box"]).names("aggregator") == []
-        assert toy_plugins.without(["other"]).names("aggregator") == ["toy-mean"]
+        assert toy_plugins.without(["other"]).names("aggregator") == ["toy-mean", "toy-share"]
+
+
+class TestKinds:
+    def test_an_aggregator_can_be_a_credit(self) -> None:
+        assert KINDS["aggregator"].missing(toys.Mean()) == []
+        assert KINDS["aggregator"].missing(toys.Share()) == []
+        assert kind_of(Aggregator) == kind_of(Credit) == "aggregator"
+
+    def test_the_lacking_members_are_those_of_the_closest_protocol(self) -> None:
+        def having(*members: str) -> object:
+            return type("Component", (), dict.fromkeys(members, 1))()
+
+        assert KINDS["aggregator"].missing(having("credit")) == ["check"]
+        assert KINDS["aggregator"].missing(having("aggregate", "domain")) == ["check"]
+        assert KINDS["role"].missing(having("provides", "requires")) == ["start"]
+
+    def test_a_protocol_that_is_not_offered_has_no_kind(self) -> None:
+        assert kind_of(RoleProvider) == "role"
+        assert kind_of(RoleRun) is None
+        assert kind_of(int) is None

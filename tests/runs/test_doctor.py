@@ -97,7 +97,7 @@ def test_a_run_that_is_being_written_is_refused(finished: Path, toy_plugins: Plu
         ("DELETE FROM best_pairs WHERE turn = 0", "turns", "best_pairs: "),
         ("DELETE FROM state WHERE part = 'population/a'", "state", "'population/a'"),
         ("UPDATE state SET state = '{}' WHERE part = 'loop'", "state", "loop.turn"),
-        ("UPDATE meta SET value = '3' WHERE key = 'format'", "format", "'3'"),
+        ("UPDATE meta SET value = '4' WHERE key = 'format'", "format", "'4'"),
     ],
 )
 def test_rows_that_contradict_each_other_are_detected(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -10,12 +11,14 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+import toy_capabilities as caps
 import toys
 from recorded import assert_same_result
 
-from evoframe import Member, Outcome, Plugins, RunConfig, load_run, resume, run
+from evoframe import InputError, Member, Outcome, Plugins, RunConfig, load_run, resume, run
 from evoframe.errors import ComponentError
 from evoframe.messages import full_text
+from evoframe.runs.starting import prepare
 
 Load = Callable[..., RunConfig]
 
@@ -56,6 +59,11 @@ def unchanged(_: Any, network: Any, design: Any) -> Any:
     return design
 
 
+def wrong_type(self: toys.Number, network: Any, design: Any) -> Any:
+    del network
+    return design.with_role(self.role, np.ones(1, np.float32))
+
+
 OOPS, TRACK = "ZeroDivisionError: oops", "'value'"
 PAIR, TURN, A = "turn 0, a 1 with b 1; a 1 with b 2", "turn 0$", "turn 0, a 1$"
 ENCODER, EVOLVER = "populations.a.encoder", "populations.a.evolver"
@@ -64,7 +72,7 @@ FAULTS = [
     (toys.Product, "simulate", raises, "simulator", OOPS, PAIR),
     (toys.Product, "simulate", giving([]), "simulator", "0", PAIR),
     (toys.Product, "simulate", giving(None), "simulator", "TypeError: 'NoneType'", ""),
-    (toys.Product, "simulate", giving([7] * 12), "simulator", "Outcome int", ""),
+    (toys.Product, "simulate", giving([7] * 4), "simulator", "Outcome int", ""),
     (toys.Product, "simulate", outcomes([1.0]), "simulator", f"array {TRACK}", ""),
     (toys.Product, "simulate", outcomes(np.ones((1, 3)), 2), "simulator", f"1 {TRACK} 2", ""),
     (toys.Product, "simulate", ENDLESS, "simulator", f"finite {TRACK}", ""),
@@ -78,13 +86,14 @@ FAULTS = [
     (toys.DriftRun, "ask", shortened(toys.DriftRun.ask), EVOLVER, "5 6", ""),
     (toys.DriftRun, "tell", raises, EVOLVER, OOPS, ""),
     (toys.DriftRun, "express", raises, EVOLVER, OOPS, A),
+    (toys.DriftRun, "express", giving(raises), EVOLVER, OOPS, A),
     (toys.DriftRun, "members", strangers, EVOLVER, "1.5 integer", ""),
     (toys.DriftRun, "dump", giving(np.float32(1)), EVOLVER, "TypeError: float32", ""),
     (toys.DriftRun, "dump", raises, EVOLVER, OOPS, r"turn 0, a \d+$"),
     (toys.DriftRun, "state", raises, EVOLVER, OOPS, ""),
     (toys.DriftRun, "state", giving({"x": float("inf")}), EVOLVER, "JSON", ""),
     (toys.DriftRun, "state", giving({1, 2}), EVOLVER, "JSON", ""),
-    (toys.First, "select", raises, "collaboration", OOPS, "turn 1$"),
+    (toys.First, "select", raises, "collaboration", OOPS, "turn 1, population a$"),
     (toys.First, "select", giving("ab"), "collaboration", "ab 2 5 'b'", ""),
     (toys.Mean, "aggregate", raises, "aggregator", OOPS, r"turn 1, a \d+$"),
     (toys.Mean, "aggregate", giving("good"), "aggregator", "'good' [", ""),
@@ -123,6 +132,109 @@ def test_a_failing_component_is_named_with_its_plugin_turn_and_individuals(
     assert re.match(concerns, error.concerns)
     assert str(error).startswith(f"{key}: {error.offered}: ")
     assert f"evoframe resume {tmp_path / 'run'}" in full_text(error)
+
+
+RUN_A, CREDIT = "turn 1, population a$", "turn 0, population a$"
+CAPABILITIES: list[tuple[str, type[Any], str, Any, str, str, str]] = [
+    ("archive", caps.ArchivingRun, "choose", raises, "collaboration", OOPS, RUN_A),
+    ("archive", caps.ArchivingRun, "choose", giving([[0, 0]] * 6), "collaboration", "[0, 0] 2 5 'b'", RUN_A),
+    ("archive", caps.ArchivingRun, "choose", giving([]), "collaboration", "0 6", RUN_A),
+    ("archive", caps.ArchivingRun, "observe", raises, "collaboration", OOPS, CREDIT),
+    ("archive", caps.ArchivingRun, "state", giving({1}), "collaboration", "TypeError set", ""),
+    ("archive", caps.Archiving, "start", raises, "collaboration", OOPS, "population a$"),
+    ("own strategies", caps.Archiving, "start", raises, "populations.b.collaboration", OOPS, "population b$"),
+    ("each", caps.Loyal, "select_each", raises, "collaboration", OOPS, RUN_A),
+    ("each", caps.Loyal, "select_each", giving([[0, 9]] * 6), "collaboration", "[0, 9] 2 5 'b'", RUN_A),
+    ("credit", toys.Share, "credit", raises, "populations.a.aggregator", OOPS, CREDIT),
+    ("credit", toys.Share, "credit", giving([1.0]), "populations.a.aggregator", "(1,) (6,)", CREDIT),
+    (
+        "credit",
+        toys.Share,
+        "credit",
+        giving([math.inf] * 6),
+        "populations.a.aggregator",
+        "inf",
+        "turn 0, a 1$",
+    ),
+    ("measures", caps.Wanting, "start", raises, EVOLVER, OOPS, "$"),
+    ("measures", caps.Second, "measure", raises, "objective", OOPS, PAIR[:20]),
+    ("measures", caps.Second, "measure", giving({}), "objective", "None 'smallness'", PAIR[:20]),
+    ("measures", caps.Typed, "measure", raises, ENCODER, OOPS, "turn 0, b 1$"),
+    ("measures", caps.Typed, "measure", giving({}), ENCODER, "KeyError 'size-of-a'", "turn 0, b 1$"),
+    ("measures", caps.Typed, "decode", wrong_type, ENCODER, "provided float32[1] 'a' float64[1]", A),
+    ("measures", caps.WantingRun, "tell", raises, EVOLVER, OOPS, "turn 0$"),
+    ("one with a role for each", caps.Random, "fill", raises, "roles.r.provider", OOPS, A),
+    ("one with a role for each", caps.Random, "fill", giving(None), "roles.r.provider", "AttributeError", A),
+    ("one with a role for each", caps.Random, "start", raises, "roles.r.provider", OOPS, "$"),
+    ("one with a role for each", caps.Random, "state", raises, "roles.r.provider", OOPS, "$"),
+]
+
+
+@pytest.mark.parametrize(
+    ("variant", "component", "method", "fault", "key", "problem", "concerns"), CAPABILITIES
+)
+def test_a_failing_capability_is_named_with_its_plugin_turn_population_and_individuals(
+    toy_variant: Load,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    variant: str,
+    component: type[Any],
+    method: str,
+    fault: Any,
+    key: str,
+    problem: str,
+    concerns: str,
+) -> None:
+    config = toy_variant(variant)
+    monkeypatch.setattr(component, method, fault)
+    with pytest.raises(ComponentError) as caught:
+        run(config, out=tmp_path / "run")
+    error, chosen = caught.value, dict(config.components())[key]
+    assert error.component == key
+    assert error.offered == f"'{chosen.name}' (plugin {chosen.source})"
+    assert all(word in error.problem for word in problem.split()), error.problem
+    assert re.match(concerns, error.concerns), error.concerns
+    assert (f"evoframe resume {tmp_path / 'run'}" in full_text(error)) == (tmp_path / "run").exists()
+
+
+def test_a_batch_size_that_fails_is_attributed_to_the_simulator(
+    toy_variant: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = toy_variant("measures")
+    monkeypatch.setattr(caps.Measuring, "batch_size", property(raises))
+    with pytest.raises(ComponentError, match=OOPS) as caught:
+        run(config, out=tmp_path / "run")
+    assert caught.value.component == "simulator"
+
+
+@pytest.mark.parametrize(
+    ("variant", "component", "key", "concerns"),
+    [
+        ("archive", caps.ArchivingRun, "collaboration", "population a"),
+        ("archive", caps.WantingRun, EVOLVER, "a"),
+        ("one with a role for each", caps.Random, "roles.r.provider", ""),
+    ],
+)
+def test_a_component_that_cannot_be_restored_is_named(
+    toy_variant: Load,
+    toy_plugins: Plugins,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    variant: str,
+    component: type[Any],
+    key: str,
+    concerns: str,
+) -> None:
+    config = toy_variant(variant)
+    prepare(config, toy_plugins, tmp_path / "run").play(lambda: True)
+    monkeypatch.setattr(component, "restore", raises)
+    with pytest.raises(InputError) as caught:
+        resume(tmp_path / "run", plugins=toy_plugins)
+    chosen = dict(config.components())[key]
+    where = ", ".join(part for part in ("state after turn 0", concerns) if part)
+    expected = f"cannot be restored: {key}: '{chosen.name}' (plugin {chosen.source}): {OOPS} ({where})"
+    assert (caught.value.problem, caught.value.key) == (expected, "state")
+    assert caught.value.source == str(tmp_path / "run")
 
 
 @pytest.mark.parametrize(

@@ -10,12 +10,14 @@ from typing import Any
 import attrs
 import pytest
 import tomli_w
+from toy_capabilities import VARIANTS
 from toy_study import STUDY
 
-from evoframe import ConfigurationError, Layer, run
-from evoframe.evolution.coevolution import first_meetings
+from evoframe import ConfigurationError, Layer, RunConfig, run
+from evoframe.evolution import first_meetings, timing_of
 from evoframe.registry.discovery import discover
-from evoframe.study.plan import Study, read_study, study_names
+from evoframe.registry.registry import Plugins
+from evoframe.study.plan import Cell, Study, read_study, study_names
 from evoframe.study.rows import Row
 
 Read = Callable[..., Study]
@@ -105,6 +107,23 @@ class TestCells:
         made = run(cell.config, out=tmp_path / "run")
         assert made.workload()[0]["pairs"] == len(first_meetings(sizes))
         assert cell.pairs == sum(row["pairs"] for row in made.workload() if row["turn"] <= 12)
+
+    @pytest.mark.parametrize(
+        "name",
+        [name for name in VARIANTS if "asynchronous" not in name],  # whose populations have drawn turns
+    )
+    def test_count_the_pairs_and_individuals_of_any_timing(
+        self, toy_variant: Callable[..., RunConfig], toy_plugins: Plugins, tmp_path: Path, name: str
+    ) -> None:
+        """At most: two individuals that reproduce together can choose each other."""
+        config = toy_variant(name)
+        made = run(config, out=tmp_path / "run", plugins=toy_plugins)
+        cell, last = Cell((), config), timing_of(config).length
+        pairs = sum(row["pairs"] for row in made.workload() if row["turn"] <= last)
+        assert cell.individuals == len(made.individuals())
+        assert pairs <= cell.pairs
+        if "parallel" not in name and "numbers" not in name:
+            assert pairs == cell.pairs
 
 
 class TestOrder:

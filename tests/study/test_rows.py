@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import hashlib
+import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import attrs
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
+from toy_capabilities import VARIANTS
 
-from evoframe import InputError, load_run
-from evoframe.study.plan import Planned, Study
+from evoframe import InputError, RunConfig, load_run, run
+from evoframe.evolution import timing_of
+from evoframe.registry.registry import Plugins
+from evoframe.study.plan import Cell, Planned, Study
 from evoframe.study.rows import Row, read_rows, row_of, score_curve, write_rows
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
@@ -92,7 +97,35 @@ def test_the_curve_of_scores_is_the_best_so_far_after_each_generation(
     finished = load_run(made[2][0].directory)
     pairs = [(pair["turn"], pair["score"]) for pair in finished.pairs() if pair["score"] is not None]
     best = [max(score for turn, score in pairs if turn <= end) for end in range(0, 9, 2)]
-    assert score_curve(finished, 2) == tuple(best)
+    assert score_curve(finished) == tuple(best)
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_curves_of_a_run_have_a_value_for_each_generation(
+    toy_variant: Callable[..., RunConfig], toy_plugins: Plugins, tmp_path: Path, name: str
+) -> None:
+    """With any timing, the last generation also has the final pair."""
+    config = toy_variant(name)
+    finished = run(config, out=tmp_path / "run", plugins=toy_plugins)
+    row = row_of(Planned(Cell((), config), 0, tmp_path / "run"), finished)
+    assert len(row.score_curve) == len(row.fitness_curve) == config.run.generations + 1
+    assert row.score_curve[-1] == row.score == finished.champion().score
+    turns = timing_of(config).length // config.run.generations
+    for generation, fitness in enumerate(row.fitness_curve):
+        assert fitness == max(
+            each["best"] for each in finished.turns() if math.ceil(each["turn"] / turns) == generation
+        )
+    write_rows([row], tmp_path / "rows.csv")
+    assert read_rows(tmp_path / "rows.csv")[0].score == row.score
+
+
+def test_a_final_pair_that_is_the_best_is_part_of_the_curve(
+    toy_variant: Callable[..., RunConfig], toy_plugins: Plugins, tmp_path: Path
+) -> None:
+    for seed in range(20):
+        config = toy_variant("final pair", f"run.seed={seed}")
+        finished = run(config, out=tmp_path / f"run-{seed}", plugins=toy_plugins)
+        assert score_curve(finished)[-1] == finished.champion().score
 
 
 def test_rows_are_also_read_without_their_curves(

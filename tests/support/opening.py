@@ -8,7 +8,7 @@ from pathlib import Path
 from evoframe.contract.config import RunConfig
 from evoframe.record.run import open_run
 from evoframe.registry.registry import Plugins
-from evoframe.runs import resuming
+from evoframe.runs import restoring, resuming
 from evoframe.runs.execution import Execution
 
 __all__ = ["configuration_of", "has_begun", "is_finished", "reopened"]
@@ -31,4 +31,4 @@ def reopened(directory: Path, plugins: Plugins, overrides: Sequence[str] = ()) -
 
 def configuration_of(directory: Path, overrides: Sequence[str], plugins: Plugins) -> RunConfig:
     with open_run(directory) as run:
-        return resuming.configuration_of(run, overrides, plugins)
+        return restoring.configuration_of(run, overrides, plugins)

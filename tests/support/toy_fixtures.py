@@ -39,6 +39,16 @@ def toy_config(toy_plugins: Plugins, toy_file: Path) -> Callable[..., RunConfig]
 
 
 @pytest.fixture
+def toy_variant(toy_plugins: Plugins, tmp_path: Path) -> Callable[..., RunConfig]:
+    """Return a function that loads a configuration with capabilities by its name."""
+
+    def load(name: str, *overrides: str) -> RunConfig:
+        return toy_box.variant(name, tmp_path, *overrides, plugins=toy_plugins)
+
+    return load
+
+
+@pytest.fixture
 def toy_study(tmp_path: Path, toy_plugins: Plugins) -> Callable[..., Study]:
     (tmp_path / "toy.toml").write_text(toys.CONFIGURATION)
 

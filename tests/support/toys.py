@@ -28,6 +28,7 @@ from evoframe import (
     Network,
     Outcome,
     Record,
+    ScoredMeetings,
     Scores,
     Variant,
     hookimpl,
@@ -44,6 +45,18 @@ class Mean:
 
     def aggregate(self, scores: Scores) -> float:
         return float(np.mean(np.sort(scores)))
+
+
+@attrs.frozen
+class Share:
+    """Credits an individual with its share of all scores of the turn."""
+
+    def check(self, n: int) -> None:
+        del n
+
+    def credit(self, meetings: ScoredMeetings, population: int) -> NDArray[np.float64]:
+        sums = [np.nansum(meetings.scores[rows]) for rows in meetings.of(population)]
+        return np.array(sums) / np.nansum(meetings.scores)
 
 
 @attrs.frozen
@@ -447,7 +460,7 @@ class Many:
 
 @hookimpl
 def evoframe_aggregators() -> Mapping[str, type[Any]]:
-    return {"toy-mean": Mean}
+    return {"toy-mean": Mean, "toy-share": Share}
 
 
 @hookimpl

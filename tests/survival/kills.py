@@ -3,6 +3,7 @@
 ``python tests/survival/kills.py --kills 500`` is the long form; the suite kills 50 times. A kill counts only
 if a turn was saved since the last start of the run. Half of the kills come from outside at any moment, the
 others from inside: between two statements of a transaction, or before or after writing a champion's file.
+The configurations take turns: the preset ``quick``, and toy ones with memories, timings and roles.
 
 Every attempt is a fork of this process, which avoids starting Python again.
 """
@@ -24,15 +25,25 @@ from pathlib import Path
 from typing import Any
 
 import evoframe.record.store
-from evoframe import Turn, hookimpl, load_config, load_run
+from evoframe import Plugins, RunConfig, Turn, hookimpl, load_config, load_run
 from evoframe.registry.discovery import discover
 from evoframe.runs.starting import prepare
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
+import toy_box
 from opening import has_begun, is_finished, reopened
 from recorded import assert_same_result, rows
 
-GENERATIONS = 40
+GENERATIONS = {
+    "quick": 20,
+    "parallel archive": 40,
+    "three archive": 12,
+    "asynchronous archive": 16,
+    "own strategies": 20,
+    "one with a role for each": 40,
+}
+"""The preset and the toy configurations that are killed, and their generations."""
+
 _PAUSE = 0.02  # s; longest time between a saved turn and a kill from outside, longer than a turn
 
 
@@ -51,13 +62,32 @@ class Reporter:
 def play(directory: Path, seed: int, workers: int, pipe: int) -> None:
     """Start or resume a run, and play it to the end."""
     plugins = discover()
+    toy_box.add_to(plugins)
     plugins.manager.register(Reporter(pipe))
-    overrides = [f"run.seed={seed}", f"run.generations={GENERATIONS}", f"executor.workers={workers}"]
     if (directory / "config.toml").exists():
         execution = reopened(directory, plugins)
     else:
-        execution = prepare(load_config("quick", overrides=overrides, plugins=plugins), plugins, directory)
+        execution = prepare(configuration(seed, workers, plugins), plugins, directory)
     execution.play()
+
+
+def kind_of(seed: int) -> str:
+    """Return the name of the configuration of the run with this *seed*."""
+    return list(GENERATIONS)[seed % len(GENERATIONS)]
+
+
+def configuration(seed: int, workers: int, plugins: Plugins) -> RunConfig:
+    """Return the configuration of the run with this *seed*."""
+    kind = kind_of(seed)
+    overrides = [
+        f"run.seed={seed}",
+        f"run.generations={GENERATIONS[kind]}",
+        f"executor={{name='threads', workers={workers}}}",
+    ]
+    if kind == "quick":
+        return load_config("quick", overrides=overrides, plugins=plugins)
+    with tempfile.TemporaryDirectory() as directory:
+        return toy_box.variant(kind, Path(directory), *overrides, plugins=plugins)
 
 
 def dies_at(call: int) -> None:
@@ -155,22 +185,24 @@ def main() -> None:
     given = parser.parse_args()
     chance, seed = random.Random(given.seed), given.seed  # noqa: S311
     counts: collections.Counter[str] = collections.Counter()
+    killed: collections.Counter[str] = collections.Counter()
     most = turns = 0
     with tempfile.TemporaryDirectory() as base:
-        while counts["inside"] + counts["outside"] < given.kills:
+        while killed.total() < given.kills or len(+killed) < len(GENERATIONS):
             directory, kills = Path(base) / f"killed-{seed}", 0
             while not (directory.exists() and has_begun(directory) and is_finished(directory)):
                 how = attempt(directory, seed, chance)
                 counts[how] += 1
                 kills += how in ("inside", "outside")
+            killed[kind_of(seed)] += kills
             compare(directory, Path(base) / f"uninterrupted-{seed}", seed)
             turns += load_run(directory).summary()["turns"]
             most, seed = max(most, kills), seed + 1
-    kills = counts["inside"] + counts["outside"]
+    kinds = ", ".join(f"{kind} {killed[kind]}" for kind in GENERATIONS)
     print(  # noqa: T201
-        f"{kills} kills after a saved turn ({counts['inside']} during a write) and {counts['early']} before; "
-        f"{seed - given.seed} runs with {turns} turns in total and at most {most} kills in one run: "
-        "all results equal those of uninterrupted runs"
+        f"{killed.total()} kills after a saved turn ({counts['inside']} during a write) "
+        f"and {counts['early']} before; {seed - given.seed} runs with {turns} turns in total "
+        f"and at most {most} kills in one run ({kinds}): all results equal those of uninterrupted runs"
     )
 
 

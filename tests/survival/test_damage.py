@@ -15,6 +15,7 @@ from recorded import rewritten
 
 from evoframe import InputError, Run, discover, load_run, run
 from evoframe.record.checksums import CHAINED, SINGLE
+from evoframe.record.layout import RUN_FORMAT
 
 TRIALS = 200
 PAGE = 4096
@@ -143,7 +144,7 @@ def test_an_endless_table_is_not_read(intact: Run, tmp_path: Path) -> None:
         database.execute(f"CREATE VIEW meta AS {endless} FROM n WHERE i < 0")
     database.close()
     for read in (everything, reopen):
-        with pytest.raises(InputError, match="2, found none;") as caught:
+        with pytest.raises(InputError, match=f"expected {RUN_FORMAT}, found none;") as caught:
             read(tmp_path / "run")
         assert caught.value.key == "meta.format"
 

@@ -16,4 +16,8 @@ def test_runs_that_are_killed_fifty_times_equal_uninterrupted_runs() -> None:
     kills, inside = map(int, counted.groups())
     assert kills >= 50
     assert 10 <= inside <= kills - 10
+    by_kind = [int(count) for count in re.findall(r"[a-z] (\d+)[,)]", ran.stdout)]
+    assert sum(by_kind) == kills
+    assert len(by_kind) == 6
+    assert min(by_kind) > 0
     assert ran.stdout.count("\n") == 1  # printed only if all results are equal

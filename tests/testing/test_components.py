@@ -8,7 +8,7 @@ import pytest
 from attrs import validators
 from processes import python
 
-from evoframe import testing
+from evoframe import Chosen, CollaborationStrategy, Source, StructureError, discover, testing
 from evoframe.testing.components import ComponentContract
 
 FROZEN = "test_it_is_a_frozen_attrs_class"
@@ -107,7 +107,37 @@ class NeverEqual:
     n: int = 2
 
 
-@pytest.mark.parametrize("component", [Plain(), Plain(n=3), NoOptions(), Explained(n=1), Numbered()], ids=str)
+@attrs.frozen
+class Combining:
+    """A component with components of plugins among its options.
+
+    Attributes:
+        one: One of them.
+        several: More of them.
+    """
+
+    one: Chosen[CollaborationStrategy]
+    several: tuple[Chosen[CollaborationStrategy], ...]
+
+
+def strategy(name: str, **options: Any) -> Chosen[CollaborationStrategy]:
+    """Return a strategy of an installed plugin."""
+    offer = discover().find("strategy", name)
+    return Chosen(name, offer.component(**options), offer.source)
+
+
+def renamed(chosen: Chosen[CollaborationStrategy]) -> Chosen[CollaborationStrategy]:
+    return attrs.evolve(chosen, name="nobody-offers-this")
+
+
+COMBINING = Combining(strategy("random", n=1), (strategy("fittest", n=3), strategy("worst")))
+
+
+@pytest.mark.parametrize(
+    "component",
+    [Plain(), Plain(n=3), NoOptions(), Explained(n=1), Numbered(), COMBINING],
+    ids=lambda component: type(component).__name__,
+)
 def test_a_sound_component_passes(
     component: Any, keeps: Callable[..., None], laws: Callable[..., list[str]]
 ) -> None:
@@ -134,6 +164,16 @@ def test_an_unsound_component_is_caught(component: Any, law: str, breaks: Callab
 
 def test_an_invalid_default_is_caught(breaks: Callable[..., None]) -> None:
     breaks(ComponentContract, RefusedDefault(n=1), DEFAULTS, error=ValueError)
+
+
+def test_a_component_among_the_options_that_no_plugin_offers_is_caught(breaks: Callable[..., None]) -> None:
+    unknown = attrs.evolve(COMBINING, several=(strategy("fittest"), renamed(strategy("worst"))))
+    breaks(ComponentContract, unknown, SURVIVES, error=StructureError)
+
+
+def test_another_source_of_a_component_among_the_options_is_caught(breaks: Callable[..., None]) -> None:
+    elsewhere = Chosen("random", COMBINING.one.component, Source("other", "1.0", "strategies"))
+    breaks(ComponentContract, attrs.evolve(COMBINING, one=elsewhere), SURVIVES)
 
 
 def test_an_option_that_cannot_be_written_is_caught(breaks: Callable[..., None]) -> None:

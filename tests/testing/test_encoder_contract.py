@@ -7,7 +7,7 @@ import pytest
 from contracts import name_of
 from numpy.typing import NDArray
 
-from evoframe import Design, Network
+from evoframe import ArrayType, Design, Network
 from evoframe.testing import EncoderContract
 
 DECLARED = "test_roles_are_declared"
@@ -16,6 +16,8 @@ SHAPES = "test_shapes_and_types_are_the_same_for_every_network"
 FINITE = "test_every_network_gives_finite_numbers"
 SAME = "test_the_same_network_gives_the_same_design"
 NAMES = "test_every_input_and_output_has_a_name"
+TYPES = "test_arrays_have_the_declared_types"
+MEASURES = "test_all_declared_measures_are_finite"
 NOT_CHANGED = "test_the_given_design_is_not_changed"
 POINTS = np.arange(8.0).reshape(4, 2)
 
@@ -54,6 +56,18 @@ class TestNamedStripe(OnABody):
     component = Named()
 
 
+class OneColor(Stripe):
+    inputs = 0
+    input_names: ClassVar[Any] = ()
+
+    def colors(self, network: Network) -> NDArray[Any]:
+        return np.clip(network(np.empty((1, 0)))[:, 0], -1, 1)
+
+
+class TestAnEncoderWithoutInputs(OnABody):
+    component = OneColor()
+
+
 class OneNameTooMany(Named):
     input_names = ("u", "v", "w")
 
@@ -72,6 +86,43 @@ class NoName(Named):
 
 class NumberForAName(Named):
     output_names = (1,)
+
+
+class Declaring(Stripe):
+    measures: ClassVar[Any] = ("brightness",)
+
+    @property
+    def array_types(self) -> dict[str, ArrayType]:
+        return {"color": ArrayType("float64", (4,)), "body": ArrayType("float64", (None,))}
+
+    def measure(self, design: Design) -> dict[str, float]:
+        return {"brightness": float(design.roles["color"].mean())}
+
+
+class TestDeclaringStripe(OnABody):
+    component = Declaring()
+
+
+class DeclaresAnotherShape(Declaring):
+    @property
+    def array_types(self) -> dict[str, ArrayType]:
+        return {"color": ArrayType("float64", (5,))}
+
+
+class DeclaresAnotherRole(Declaring):
+    @property
+    def array_types(self) -> dict[str, ArrayType]:
+        return {"shade": ArrayType("float64", (4,))}
+
+
+class MeasuresMore(Declaring):
+    def measure(self, design: Design) -> dict[str, float]:
+        return {**super().measure(design), "contrast": 1.0}
+
+
+class MeasuresNaN(Declaring):
+    def measure(self, design: Design) -> dict[str, float]:
+        return {"brightness": float("nan")}
 
 
 class NoRole(Stripe):
@@ -153,8 +204,12 @@ class InfinitePoints(Stripe):
         return np.clip(network(POINTS / np.zeros(1) if POINTS.all() else POINTS + np.inf)[:, 0], -1, 1)
 
 
-class NoInputs(Stripe):
-    inputs = 0
+class FewerThanNoInputs(Stripe):
+    inputs = -1
+
+
+class NoOutputs(Stripe):
+    outputs = 0
 
 
 @pytest.mark.parametrize(
@@ -163,7 +218,8 @@ class NoInputs(Stripe):
         (NoRole(), DECLARED),
         (ListOfRoles(), DECLARED),
         (RequiredAndProvided(), DECLARED),
-        (NoInputs(), "test_a_network_has_inputs_and_outputs"),
+        (FewerThanNoInputs(), "test_a_network_has_inputs_and_outputs"),
+        (NoOutputs(), "test_a_network_has_inputs_and_outputs"),
         (OneNameTooMany(), NAMES),
         (ListOfNames(), NAMES),
         (OneNameForAll(), NAMES),
@@ -181,6 +237,10 @@ class NoInputs(Stripe):
         (InfinitePoints(), FINITE),
         (Remembers(), SAME),
         (ChangesTheBody(), NOT_CHANGED),
+        (DeclaresAnotherShape(), TYPES),
+        (DeclaresAnotherRole(), TYPES),
+        (MeasuresMore(), MEASURES),
+        (MeasuresNaN(), MEASURES),
     ],
     ids=name_of,
 )

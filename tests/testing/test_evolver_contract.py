@@ -15,6 +15,7 @@ from evoframe import ConfigurationError, Member, Network, NetworkGraph, NetworkL
 from evoframe.testing import EvolverContract
 
 SIZES = "test_sizes_are_refused_by_a_configuration_error"
+WANTS = "test_wanted_measures_are_a_tuple_of_different_names"
 KEEPS_SIZE = "test_the_population_keeps_its_size"
 UNIQUE = "test_ids_are_unique"
 ONE_GENOME = "test_an_id_stands_for_one_genome"
@@ -119,6 +120,18 @@ class Climber:
         return self.run(inputs, outputs, size, rng)
 
 
+class ClimbingVolume(Climbing):
+    def tell(self, fitness: NDArray[np.float64], measures: Mapping[str, NDArray[np.float64]]) -> None:
+        super().tell(fitness - measures["volume"], measures)
+        self.fitness = fitness.tolist()
+
+
+@attrs.frozen
+class VolumeClimber(Climber):
+    wants: ClassVar[Any] = ("volume",)
+    run: ClassVar[type[Any]] = ClimbingVolume
+
+
 class TestClimber(EvolverContract):
     component = Climber()
 
@@ -129,7 +142,10 @@ class TestClimberOfOtherShape(EvolverContract):
     outputs = 1
     size = 5
     turns = 3
-    measures = ("volume",)
+
+
+class TestVolumeClimber(EvolverContract):
+    component = VolumeClimber()
 
 
 class PythonsRandom(Climbing):
@@ -439,6 +455,20 @@ def test_values_that_are_not_json_are_caught(
     run: type[Any], law: str, error: type[Exception], breaks: Callable[..., None]
 ) -> None:
     breaks(EvolverContract, starting(run, Climber), law, error=error)
+
+
+class ForgetsToWant(VolumeClimber):
+    wants: ClassVar[Any] = ("age",)
+
+
+@pytest.mark.parametrize("names", ["volume", ["volume"], ("volume", "volume"), ("volume", " "), (1,)])
+def test_wrong_wants_are_caught(names: Any, breaks: Callable[..., None]) -> None:
+    wanting = type("Wanting", (Climber,), {"wants": names})
+    breaks(EvolverContract, wanting(), WANTS)
+
+
+def test_a_measure_that_is_used_without_being_wanted_is_caught(breaks: Callable[..., None]) -> None:
+    breaks(EvolverContract, ForgetsToWant(), KEEPS_SIZE, error=KeyError)
 
 
 class RefusesWithAnotherError(Climber):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from contracts import name_of
 
-from evoframe import ConfigurationError, Member
+from evoframe import ConfigurationError, Judged, Member
 from evoframe.testing import CollaborationStrategyContract
 
 REFUSALS = "test_populations_are_refused_by_a_configuration_error_that_names_their_size"
@@ -18,6 +18,9 @@ ONCE = "test_no_member_is_chosen_twice"
 SAME = "test_the_same_random_state_gives_the_same_choice"
 TIES = "test_ties_are_broken_by_index"
 CLEAN = "test_no_diverged_member_is_chosen_while_a_clean_one_is_left"
+NUMBERS = "test_all_possible_numbers_are_declared"
+ROWS = "test_there_is_a_row_for_each_individual"
+IDS = "test_ids_are_irrelevant_to_choices_for_each_individual"
 
 
 @attrs.frozen
@@ -131,9 +134,100 @@ class RefusesWithAnotherError(Two):
         return 2
 
 
+class Neighbors(Two):
+    """A valid strategy for each individual, and the base of the broken ones: the members beside its index."""
+
+    def select_each(
+        self, judged: Sequence[Judged], members: Sequence[Member], rng: np.random.Generator
+    ) -> Any:
+        size = self.size(len(members))
+        rows = [self.row(one, members)[:size] for one in judged]
+        return np.array(rows, dtype=np.intp).reshape(len(judged), size)
+
+    def row(self, one: Judged, members: Sequence[Member]) -> list[int]:
+        around = [(one.index + step) % len(members) for step in range(len(members))]
+        return sorted(around, key=lambda index: members[index].diverged)
+
+
+class TestNeighbors(CollaborationStrategyContract):
+    component = Neighbors()
+
+
+class FloatRows(Neighbors):
+    def select_each(self, judged: Any, members: Any, rng: Any) -> Any:
+        return super().select_each(judged, members, rng).astype(np.float64)
+
+
+class OneRowForAll(Neighbors):
+    def select_each(self, judged: Any, members: Any, rng: Any) -> Any:
+        return super().select_each([Judged(members[0], index=0)], members, rng)
+
+
+class RepeatsInARow(Neighbors):
+    def select_each(self, judged: Any, members: Any, rng: Any) -> Any:
+        return super().select_each(judged, members, rng)[:, [0, 0]]
+
+
+class NearestIds(Neighbors):
+    def row(self, one: Judged, members: Sequence[Member]) -> list[int]:
+        return sorted(range(len(members)), key=lambda index: (members[index].diverged, members[index].id))
+
+
+class SmallestIdOfJudged(Neighbors):
+    def row(self, one: Judged, members: Sequence[Member]) -> list[int]:
+        return super().row(attrs.evolve(one, index=one.member.id), members)
+
+
+class TwoOrThree(Two):
+    """A valid strategy with two possible numbers, and the base of the broken ones."""
+
+    def sizes(self, n_members: int) -> Sequence[int]:
+        self.size(n_members)
+        return [3, 2]
+
+
+class TestTwoOrThree(CollaborationStrategyContract):
+    component = TwoOrThree()
+
+
+class WithoutItsSize(TwoOrThree):
+    def sizes(self, n_members: int) -> Sequence[int]:
+        self.size(n_members)
+        return [3]
+
+
+class PossiblyNobody(TwoOrThree):
+    def sizes(self, n_members: int) -> Sequence[int]:
+        self.size(n_members)
+        return [0, 2]
+
+
+class RefusesMoreThanItsSize(TwoOrThree):
+    def sizes(self, n_members: int) -> Sequence[int]:
+        if n_members < 3:
+            raise ConfigurationError(f"3 of {n_members} members")
+        return [2, 3]
+
+
+class RefusesNumbersWithoutNumbers(TwoOrThree):
+    def sizes(self, n_members: int) -> Sequence[int]:
+        if n_members < 2:
+            raise ConfigurationError("too few")
+        return [2, 3]
+
+
 @pytest.mark.parametrize(
     ("component", "law"),
     [
+        (WithoutItsSize(), NUMBERS),
+        (PossiblyNobody(), NUMBERS),
+        (RefusesMoreThanItsSize(), NUMBERS),
+        (RefusesNumbersWithoutNumbers(), NUMBERS),
+        (FloatRows(), ROWS),
+        (OneRowForAll(), ROWS),
+        (RepeatsInARow(), ONCE),
+        (NearestIds(), IDS),
+        (SmallestIdOfJudged(), IDS),
         (Repeats(), ONCE),
         (OneTooMany(), COUNT),
         (OtherType(), COUNT),

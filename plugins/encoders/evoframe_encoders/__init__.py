@@ -1,4 +1,4 @@
-"""Encoders that decode networks into voxel bodies, and into phase offsets of their contractile voxels."""
+"""Encoders: networks become voxel bodies, phase offsets of contractile voxels, or vectors of numbers."""
 
 from __future__ import annotations
 
@@ -7,11 +7,18 @@ from collections.abc import Mapping
 from evoframe import Encoder, hookimpl
 from evoframe_encoders.controller import CppnController
 from evoframe_encoders.morphology import CppnMorphology
+from evoframe_encoders.vector import Vector
+from evoframe_encoders.voxels import CppnVoxels
 
-__all__ = ["CppnController", "CppnMorphology", "evoframe_encoders"]
+__all__ = ["CppnController", "CppnMorphology", "CppnVoxels", "Vector", "evoframe_encoders"]
 
 
 @hookimpl
 def evoframe_encoders() -> Mapping[str, type[Encoder]]:
-    """Register the encoders ``cppn-morphology`` and ``cppn-controller``."""
-    return {"cppn-morphology": CppnMorphology, "cppn-controller": CppnController}
+    """Register the encoders of this package."""
+    return {
+        "cppn-controller": CppnController,
+        "cppn-morphology": CppnMorphology,
+        "cppn-voxels": CppnVoxels,
+        "vector": Vector,
+    }

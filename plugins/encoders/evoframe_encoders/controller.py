@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import ClassVar
 
@@ -10,7 +11,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, Design, Network
+from evoframe import CONTRACTILE, CONTROLLER, MORPHOLOGY, ArrayType, Design, Network
 from evoframe_encoders.canvas import Canvas, voxel_points
 
 __all__ = ["CppnController"]
@@ -70,6 +71,12 @@ class CppnController:
     def provides(self) -> tuple[str, ...]:
         """The controller, ``float64[X, Y, Z]``: phase offsets within +-2 pi."""
         return (CONTROLLER,)
+
+    @property
+    def array_types(self) -> Mapping[str, ArrayType]:
+        """Both arrays have three axes of any lengths."""
+        anywhere = (None, None, None)
+        return {MORPHOLOGY: ArrayType("uint8", anywhere), CONTROLLER: ArrayType("float64", anywhere)}
 
     def decode(self, network: Network, design: Design) -> Design:
         """Return *design* with the phase offsets that *network* gives for its body."""

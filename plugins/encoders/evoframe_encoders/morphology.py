@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, ClassVar
 
@@ -11,7 +12,7 @@ import numpy as np
 from attrs.validators import ge
 from numpy.typing import NDArray
 
-from evoframe import CONTRACTILE, EMPTY, MORPHOLOGY, PASSIVE, Design, Network
+from evoframe import CONTRACTILE, EMPTY, MORPHOLOGY, PASSIVE, ArrayType, Design, Network
 from evoframe_encoders.canvas import Canvas, voxel_points
 
 __all__ = ["CppnMorphology"]
@@ -68,6 +69,7 @@ class CppnMorphology:
 
     input_names: ClassVar[tuple[str, ...]] = ("x", "y", "z")
     output_names: ClassVar[tuple[str, ...]] = ("presence", "material")
+    measures: ClassVar[tuple[str, ...]] = ("count-contractile", "filled-share")
 
     @property
     def inputs(self) -> int:
@@ -88,6 +90,20 @@ class CppnMorphology:
     def provides(self) -> tuple[str, ...]:
         """The morphology, ``uint8[X, Y, Z]``: 0 empty, 1 passive, 3 contractile."""
         return (MORPHOLOGY,)
+
+    @property
+    def array_types(self) -> Mapping[str, ArrayType]:
+        """The morphology has the type uint8 and the shape of the canvas."""
+        return {MORPHOLOGY: ArrayType("uint8", self.canvas)}
+
+    def measure(self, design: Design) -> Mapping[str, float]:
+        """Return the number of contractile voxels, and the share of voxels that are not empty.
+
+        The share refers to the voxels that the network determines: with *enclosure*, those of the interior.
+        """
+        drawn = design.roles[MORPHOLOGY][_drawn(self.enclosure)]
+        filled = float(np.mean(drawn != EMPTY)) if drawn.size else 0.0
+        return {"count-contractile": float(np.sum(drawn == CONTRACTILE)), "filled-share": filled}
 
     def decode(self, network: Network, design: Design) -> Design:
         """Return *design* with the morphology that *network* encodes."""

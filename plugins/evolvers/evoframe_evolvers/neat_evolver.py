@@ -14,13 +14,12 @@ from neat.reporting import ReporterSet
 from neat.species import Species
 
 from evoframe import ConfigurationError, structure
+from evoframe_evolvers.cohort import Cohort, SavedCohort
 from evoframe_evolvers.cppn import (
-    Cohort,
     Counter,
     GenePool,
     GenomeOptions,
     NetworkRun,
-    SavedCohort,
     SavedPool,
     Sections,
     at_least,
@@ -161,6 +160,11 @@ class NeatRun(NetworkRun):
         )
         self._reproduction.ancestors.clear()
         return genomes
+
+    def _begin(self, genomes: dict[int, Any]) -> None:
+        self._species_set.species, self._species_set.indexer.value = {}, 1
+        self._species_set.speciate(self._pool.config, genomes, 0)
+        super()._begin(genomes)
 
     def _succeed(self) -> None:
         config, generation = self._pool.config, self._cohort.generation

@@ -10,13 +10,12 @@ import neat
 import numpy as np
 
 from evoframe import ConfigurationError, structure
+from evoframe_evolvers.cohort import Cohort, SavedCohort
 from evoframe_evolvers.cppn import (
     NO_SELECTION,
-    Cohort,
     GenePool,
     GenomeOptions,
     NetworkRun,
-    SavedCohort,
     SavedPool,
     at_least,
 )
@@ -29,7 +28,8 @@ class RandomSearch(GenomeOptions):
     """Random search: a new population in every turn, independent of fitness.
 
     Each genome is initialized as in NEAT and then mutated several times; the number of mutations is drawn
-    uniformly from 0 to *mutations*. See :class:`GenomeOptions` for initialization and mutation.
+    uniformly from 0 to *mutations*. Mutants of seeds, which only the first turn has, are mutated at least
+    once. See :class:`GenomeOptions` for initialization and mutation.
 
     Attributes:
         mutations: Maximum number of mutations of a genome; with 0, every turn is like NEAT's initial turn.
@@ -72,6 +72,10 @@ class RandomSearchRun(NetworkRun):
         with self._pool.stream.swapped_in() as stream:
             genomes = [self._draw(stream) for _ in range(self._size)]
         return {genome.key: genome for genome in genomes}
+
+    def _mutations_of_seeds(self, stream: Random) -> int:
+        """Return a number of at least one mutation, since a seed itself is already a member."""
+        return stream.randint(1, max(1, self._mutations))
 
     def _draw(self, stream: Random) -> Any:
         genome = neat.DefaultGenome(next(self._pool.genome_ids))

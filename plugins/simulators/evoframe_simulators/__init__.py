@@ -1,4 +1,4 @@
-"""Built-in simulators: currently ``vox``, which simulates voxel bodies with libvox.
+"""Built-in simulators: ``vox``, which simulates voxel bodies with libvox, and ``functions``, without physics.
 
 Each simulator has its own package. :mod:`.files` and :mod:`.npz`, which read untrusted files, are shared.
 """
@@ -6,12 +6,13 @@ Each simulator has its own package. :mod:`.files` and :mod:`.npz`, which read un
 from collections.abc import Mapping
 
 from evoframe import Simulator, hookimpl
+from evoframe_simulators.functions import Functions
 from evoframe_simulators.vox import FixedRegion, PaletteMaterial, Vox, VoxSettings
 
-__all__ = ["FixedRegion", "PaletteMaterial", "Vox", "VoxSettings", "evoframe_simulators"]
+__all__ = ["FixedRegion", "Functions", "PaletteMaterial", "Vox", "VoxSettings", "evoframe_simulators"]
 
 
 @hookimpl
 def evoframe_simulators() -> Mapping[str, type[Simulator]]:
-    """Register the simulator ``vox``."""
-    return {"vox": Vox}
+    """Register the simulators ``functions`` and ``vox``."""
+    return {"functions": Functions, "vox": Vox}

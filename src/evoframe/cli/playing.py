@@ -13,7 +13,7 @@ from evoframe.cli.progress import Progress
 from evoframe.cli.signals import ended_by_signal, exit_code, stop_on_signals
 from evoframe.cli.streams import echo
 from evoframe.cli.verify import verification_table
-from evoframe.contract import RunConfig, SupportsVariants, unit_of
+from evoframe.contract import RunConfig, SupportsGeometry, SupportsVariants, fitness_unit_of, unit_of
 from evoframe.designs import verdict
 from evoframe.record import Run
 from evoframe.runs import Execution, verify_champion
@@ -70,10 +70,13 @@ def show_end(ctx: click.Context, config: RunConfig, run: Run) -> None:
         console.print(verdict(verification, config, design), soft_wrap=True)
         warn_overlooked(ctx, directory, config, [design], [unchanged])
         warn_unreproduced(ctx, run, config, champion.score, unchanged)
-    click.echo(
-        f"\nNext, figures and a page that shows the champion moving:\n  {command(ctx, 'report', directory)}",
-        err=True,
-    )
+    click.echo(f"\nNext, {_contents_of_report(config)}:\n  {command(ctx, 'report', directory)}", err=True)
+
+
+def _contents_of_report(config: RunConfig) -> str:
+    if isinstance(config.simulator.component, SupportsGeometry):
+        return "figures and a page that shows the champion moving"
+    return "figures"
 
 
 def _summary(finished: Run, config: RunConfig) -> Table:
@@ -88,7 +91,8 @@ def _summary(finished: Run, config: RunConfig) -> Table:
     score = f"{scored(best['score'], unit)} ({config.objective.name}), found in turn {best['turn']}"
     table.add_row("best pair", score)
     for population, fittest in result["fittest"].items():
-        fitness = f"fitness {scored(fittest['fitness'], unit)}, genome {fittest['genome_id']}"
+        fitness = scored(fittest["fitness"], fitness_unit_of(config, population))
+        fitness = f"fitness {fitness}, genome {fittest['genome_id']}"
         table.add_row(f"fittest {population}", fitness)
     table.add_row("pair of the fittest", scored(result["fittest_pair_score"], unit))
     counts = f"{simulations:,} simulated, {pairs - simulations:,} repeats, {diverged:,} diverged"

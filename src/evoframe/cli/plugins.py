@@ -10,14 +10,16 @@ from rich.table import Table
 
 from evoframe.cli.context import common_options, output, plugins_of
 from evoframe.cli.streams import echo
-from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, ROLE_COMPONENTS
 from evoframe.registry import Plugins
 
 __all__ = ["plugins"]
 
-_SETTINGS = {kind: key for key, kind in COMPONENTS.items()} | {
-    kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
-}
+_SETTINGS = (
+    {kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()}
+    | {kind: f"roles.NAME.{key}" for key, kind in ROLE_COMPONENTS.items()}
+    | {kind: key for key, kind in COMPONENTS.items()}
+)
 """Kind of component -> the key that chooses it in a configuration."""
 
 

@@ -11,7 +11,8 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from evoframe.cli.context import messages
-from evoframe.contract import RunConfig, Turn, unit_of
+from evoframe.contract import RunConfig, Turn, fitness_unit_of
+from evoframe.evolution import timing_of
 from evoframe.messages import quantity
 from evoframe.registry import hookimpl
 
@@ -29,15 +30,15 @@ class Progress:
         self._bar: _Bar | None = None
         self._task = progress.TaskID(0)
         self._best: dict[str, float] = {}
-        self._unit = ""
+        self._units: dict[str, str] = {}
         self._turns = self._pairs = self._simulations = 0
         self._started = self._shown = time.monotonic()
 
     @hookimpl
     def evoframe_run_started(self, config: RunConfig, directory: Path) -> None:
         """Print the name, seed and directory of the run."""
-        self._turns = config.run.generations * len(config.populations)
-        self._unit = unit_of(config.objective.component)
+        self._turns = timing_of(config).length
+        self._units = {population: fitness_unit_of(config, population) for population in config.populations}
         self._started = self._shown = time.monotonic()
         self._console.print(
             f"{config.label}, seed {config.run.seed}: {self._turns} turns, saved in {directory}",
@@ -82,7 +83,8 @@ class Progress:
 
     def _detail(self, now: float) -> str:
         best = "  ".join(
-            f"{population} {quantity(fitness, self._unit)}" for population, fitness in self._best.items()
+            f"{population} {quantity(fitness, self._units.get(population, ''))}"
+            for population, fitness in self._best.items()
         )
         rate = self._simulations / max(now - self._started, 1e-9)
         cached = 1 - self._simulations / self._pairs

@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from evoframe.cli.context import messages
+from evoframe.evolution import timing_of
 from evoframe.messages import quantity
 from evoframe.study import Cell, End, Planned, Row, Study, Watcher
 
@@ -67,7 +68,7 @@ class _Work:
     def saw(self, planned: Planned, turn: int) -> None:
         """Count a finished turn; turns before the first one seen were done in an earlier session."""
         config = planned.cell.config
-        turns = config.run.generations * len(config.populations) + 1
+        turns = timing_of(config).length + 1
         pairs = planned.cell.pairs / turns
         if planned not in self._seen:
             self._seen.add(planned)

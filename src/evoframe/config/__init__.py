@@ -7,6 +7,7 @@ from evoframe.config.resolve import (
     complete_config,
     load_config,
     named_simulator,
+    resolve_component,
     resolve_layers,
     resolve_simulator,
 )
@@ -23,6 +24,7 @@ __all__ = [
     "named_simulator",
     "preset_names",
     "read_layers",
+    "resolve_component",
     "resolve_layers",
     "resolve_simulator",
     "settings_like",

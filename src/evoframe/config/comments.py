@@ -12,8 +12,10 @@ from evoframe.config.options import Option, options_of, summary_of
 from evoframe.contract import (
     COMPONENTS,
     POPULATION_COMPONENTS,
+    ROLE_COMPONENTS,
     PluginSettings,
     PopulationConfig,
+    RoleConfig,
     RunConfig,
     RunSettings,
 )
@@ -50,9 +52,13 @@ def _sections(config: RunConfig, *, active: bool) -> Iterator[str]:
     yield from _section("run", tables["run"], RunSettings, active=active)
     for role, table in tables["populations"].items():
         yield from _section(f"populations.{role}", table, PopulationConfig, active=active)
-        for part in POPULATION_COMPONENTS:
+        for part in (part for part in POPULATION_COMPONENTS if part in table):
             key = f"populations.{role}.{part}"
             yield from _section(key, table[part], type(components[key].component), active=active)
+    for name, table in tables.get("roles", {}).items():
+        yield from _section(f"roles.{name}", table, RoleConfig, active=active)
+        key = f"roles.{name}.provider"
+        yield from _section(key, table["provider"], type(components[key].component), active=active)
     for key in COMPONENTS:
         yield from _section(key, tables[key], type(components[key].component), active=active)
     yield from _section("plugins", tables["plugins"], PluginSettings, active=active)
@@ -80,7 +86,9 @@ def _section(path: str, table: Tree, class_: type, *, active: bool) -> Iterator[
 
 
 def _has_own_section(class_: type, option: str) -> bool:
-    return class_ is PopulationConfig and option in POPULATION_COMPONENTS
+    return (class_ is PopulationConfig and option in POPULATION_COMPONENTS) or (
+        class_ is RoleConfig and option in ROLE_COMPONENTS
+    )
 
 
 def _option(name: str, value: Any, option: Option, *, active: bool) -> Iterator[str]:

@@ -9,7 +9,14 @@ from typing import Any
 import attrs
 
 from evoframe.config.layers import read_layers
-from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, PluginSettings, RunSettings
+from evoframe.contract import (
+    COMPONENTS,
+    POPULATION_COMPONENTS,
+    ROLE_COMPONENTS,
+    PluginSettings,
+    PopulationConfig,
+    RunSettings,
+)
 from evoframe.documents import Fault, Tree, leaves, option_names
 from evoframe.errors import ConfigurationError
 from evoframe.messages import suggestion
@@ -17,7 +24,7 @@ from evoframe.registry import Plugins
 
 __all__ = ["SECTIONS", "known_keys", "settings_like", "similar_keys", "unknown_key", "with_hints"]
 
-SECTIONS = ("run", "populations", *COMPONENTS, "plugins")
+SECTIONS = ("run", "populations", "roles", *COMPONENTS, "plugins")
 """The top-level keys of a configuration."""
 
 _MOST_HINTS = 4
@@ -32,9 +39,17 @@ def known_keys(tree: Tree, plugins: Plugins) -> list[str]:
         keys += _component_keys(key, kind, tree.get(key), plugins)
     for role, table in populations.items() if isinstance(populations, Mapping) else ():
         if isinstance(table, Mapping):
-            keys += [f"populations.{role}", f"populations.{role}.size"]
+            plain = [n for n in option_names(PopulationConfig) if n not in POPULATION_COMPONENTS]
+            keys += [f"populations.{role}", *(f"populations.{role}.{name}" for name in plain)]
             for key, kind in POPULATION_COMPONENTS.items():
                 path = f"populations.{role}.{key}"
+                keys += [path, *_component_keys(path, kind, table.get(key), plugins)]
+    roles = tree.get("roles")
+    for name, table in roles.items() if isinstance(roles, Mapping) else ():
+        if isinstance(table, Mapping):
+            keys += [f"roles.{name}", f"roles.{name}.draw"]
+            for key, kind in ROLE_COMPONENTS.items():
+                path = f"roles.{name}.{key}"
                 keys += [path, *_component_keys(path, kind, table.get(key), plugins)]
     return keys
 
@@ -46,7 +61,8 @@ def settings_like(word: str, plugins: Plugins) -> list[str]:
 
 def similar_keys(key: str, known: Sequence[str]) -> list[str]:
     """Return the *known* keys that end with *key*; if there are none, those that end with a similar word."""
-    exact = [each for each in known if f".{each}".endswith(f".{_ALIASES.get(key, key)}")]
+    meant = _ALIASES.get(key, key)
+    exact = [meant] if meant in known else [each for each in known if each.endswith(f".{meant}")]
     if exact:
         return exact
     words = {each.rpartition(".")[2] for each in known}

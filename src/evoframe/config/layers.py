@@ -10,7 +10,7 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, ROLE_COMPONENTS
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError, InputError
 from evoframe.files import TOO_DEEP, exists, is_too_deep, parsed_toml, read_text
@@ -244,7 +244,8 @@ def _value(text: str, value: str) -> Any:
 def _is_component(path: tuple[str, ...]) -> bool:
     if len(path) == 1:
         return path[0] in COMPONENTS
-    return len(path) == 3 and path[0] == "populations" and path[2] in POPULATION_COMPONENTS
+    parts = {"populations": POPULATION_COMPONENTS, "roles": ROLE_COMPONENTS}
+    return len(path) == 3 and path[2] in parts.get(path[0], ())
 
 
 def _with_component_tables(layer: Layer) -> Layer:

@@ -12,7 +12,7 @@ import docstring_parser
 
 __all__ = ["Option", "options_of", "summary_of"]
 
-_BOUND = re.compile(r"<Validator for x (.+?)>(?=[,)\s]|$)")
+_BOUND = re.compile(r"<Validator for x (.+?)>(?=[,)>\s]|$)")
 _NUMBER = re.compile(r"(?<=[<>=] )\S+")
 _CHOICES = re.compile(r"options \((.*?)\)")
 _NAMES = {bool: "true or false", int: "whole number", float: "number", str: "text"}

@@ -6,23 +6,28 @@ import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import UnionType
-from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
 import attrs
 from attrs import validators
 
+from evoframe.config.checks import Checks
 from evoframe.config.hints import SECTIONS, known_keys, unknown_key, with_hints
 from evoframe.config.labels import label_of
 from evoframe.config.layers import Layer, Layers, layer_of, read_layers
 from evoframe.contract import (
     COMPONENTS,
     POPULATION_COMPONENTS,
+    ROLE_COMPONENTS,
+    SHARED,
     Chosen,
     PluginSettings,
     PopulationConfig,
+    RoleConfig,
     RunConfig,
     RunSettings,
     Simulator,
+    StartSettings,
     is_role,
 )
 from evoframe.documents import Fault, StructureError, Tree, structure
@@ -30,7 +35,7 @@ from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import found
 from evoframe.registry import KINDS, Offer, Plugins, discover, kind_of
 
-__all__ = ["load_config", "named_simulator", "resolve_layers", "resolve_simulator"]
+__all__ = ["load_config", "named_simulator", "resolve_component", "resolve_layers", "resolve_simulator"]
 
 C = TypeVar("C")
 _RESERVED_ROLES = {"turn", "pair", "score", "diverged_at"}
@@ -133,6 +138,22 @@ def resolve_simulator(layers: Layers, plugins: Plugins) -> Chosen[Simulator] | N
     return reading.chosen(usable, "simulator", tree.get("simulator"), ("simulator",))
 
 
+def resolve_component(options: Tree, class_: type[C], path: tuple[str, ...]) -> C:
+    """Return a component with options as a configuration contains them.
+
+    Components among the options are those of the installed plugins, which are loaded only if there are any.
+
+    Raises:
+        StructureError: The options are invalid; contains all faults, their paths beginning with *path*.
+    """
+    reading = _Reading({})
+    plugins = discover() if any(_nested_options(class_)) else Plugins()
+    component = reading.component(plugins, class_, options, path)
+    if component is None:
+        raise StructureError(reading.faults)
+    return component
+
+
 def _joined(faults: list[Fault], layers: Layers) -> ConfigurationError:
     errors = [
         ConfigurationError(
@@ -146,8 +167,20 @@ def _joined(faults: list[Fault], layers: Layers) -> ConfigurationError:
 
 
 @attrs.frozen
-class _Size:
+class _Plain:
+    """The options of a population that choose no component."""
+
     size: int = attrs.field(default=25, validator=validators.ge(2))
+    goal: Literal["maximize", "minimize"] = "maximize"
+    turns: int = attrs.field(default=1, validator=validators.ge(1))
+    start: StartSettings = attrs.field(factory=StartSettings)
+
+
+@attrs.frozen
+class _PlainRole:
+    """The options of a role that choose no component."""
+
+    draw: Literal["run", "turn", "individual"] = "run"
 
 
 class _Reading:
@@ -175,14 +208,16 @@ class _Reading:
         run = self.section("run", RunSettings)
         choose = functools.partial(self.chosen, plugins)
         populations = self._populations(choose)
+        roles = self._roles(choose)
         chosen = {key: choose(kind, self.tree.get(key), (key,)) for key, kind in COMPONENTS.items()}
-        self.faults += _Checks(populations, chosen).faults(scored=scored)
+        self.faults += Checks(run, populations, roles, chosen).faults(scored=scored)
         if self.faults:
             self.faults = with_hints(self.faults, known_keys(self.tree, plugins))
             return None
         return RunConfig(
             run=cast("RunSettings", run),
             populations=cast("Mapping[str, PopulationConfig]", populations),
+            roles=cast("Mapping[str, RoleConfig]", roles),
             plugins=settings,
             label=label,
             **cast("dict[str, Any]", chosen),
@@ -201,14 +236,18 @@ class _Reading:
         except ConfigurationError as error:
             self.faults.append(Fault(path, str(error)))
             return None
-        faults = len(self.faults)
-        options = self._with_nested(plugins, offer.component, options, path)
-        component = self._structured(options, offer.component, path) if len(self.faults) == faults else None
+        component = self.component(plugins, offer.component, options, path)
         if component is None:
             return None
         violations = [Fault(path, message) for message in _violations(offer, component)]
         self.faults += violations
         return None if violations else Chosen(table["name"], component, offer.source)
+
+    def component(self, plugins: Plugins, class_: type[C], options: Tree, path: tuple[str, ...]) -> C | None:
+        """Return a component with these options, or ``None`` if there are faults."""
+        faults = len(self.faults)
+        complete = self._with_nested(plugins, class_, options, path)
+        return self._structured(complete, class_, path) if len(self.faults) == faults else None
 
     def _with_nested(self, plugins: Plugins, class_: type[Any], options: Tree, path: tuple[str, ...]) -> Tree:
         """Return the options of a component with those that are components themselves chosen."""
@@ -246,12 +285,36 @@ class _Reading:
 
     def _populations(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, PopulationConfig | None]:
         tables = self.tree.get("populations")
-        if not isinstance(tables, Mapping) or len(tables) < 2:
-            count = len(tables) if isinstance(tables, Mapping) else 0
-            message = f"expected at least two tables [populations.ROLE], found {count}"
-            self.faults.append(Fault(("populations",), message))
+        if isinstance(tables, Mapping):  # a file can leave out populations of the preset that it extends
+            tables = {name: table for name, table in tables.items() if table is not False}
+        if not isinstance(tables, Mapping) or not tables:
+            self.faults.append(
+                Fault(("populations",), "expected at least one table [populations.NAME], found none")
+            )
             return {}
         return {role: self._population(role, table, choose) for role, table in tables.items()}
+
+    def _roles(self, choose: Callable[..., Chosen[Any] | None]) -> dict[str, RoleConfig | None]:
+        tables = self.tree.get("roles", {})
+        if isinstance(tables, Mapping):
+            tables = {name: table for name, table in tables.items() if table is not False}
+        if not isinstance(tables, Mapping):
+            self.faults.append(Fault(("roles",), f"expected tables [roles.NAME], found {found(tables)}"))
+            return {}
+        return {name: self._role(name, table, choose) for name, table in tables.items()}
+
+    def _role(self, name: str, table: Any, choose: Callable[..., Chosen[Any] | None]) -> RoleConfig | None:
+        path = ("roles", name)
+        if not is_role(name):
+            message = f"invalid name '{name}'; use lower-case letters, digits, - and _, with a letter first"
+            self.faults.append(Fault(path, message))
+        if not isinstance(table, Mapping):
+            self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
+            return None
+        rest = {key: value for key, value in table.items() if key not in ROLE_COMPONENTS}
+        plain = self._structured(rest, _PlainRole, path)
+        provider = choose("role", table.get("provider"), (*path, "provider"))
+        return RoleConfig(provider, plain.draw) if plain and provider else None
 
     def _population(
         self, role: str, table: Any, choose: Callable[..., Chosen[Any] | None]
@@ -266,79 +329,16 @@ class _Reading:
             self.faults.append(Fault(path, f"expected a table, found {found(table)}", options=()))
             return None
         rest = {key: value for key, value in table.items() if key not in POPULATION_COMPONENTS}
-        size = self._structured(rest, _Size, path)
+        plain = self._structured(rest, _Plain, path)
         chosen = {
-            key: choose(kind, table.get(key), (*path, key)) for key, kind in POPULATION_COMPONENTS.items()
+            key: choose(kind, table.get(key), (*path, key))
+            for key, kind in POPULATION_COMPONENTS.items()
+            if key in table or key not in SHARED
         }
-        if size is None or None in chosen.values():
+        if plain is None or None in chosen.values():
             return None
-        return PopulationConfig(size.size, **cast("dict[str, Any]", chosen))
-
-
-class _Checks:
-    """Checks between components; checks that earlier faults make impossible are skipped."""
-
-    def __init__(
-        self,
-        populations: Mapping[str, PopulationConfig | None],
-        chosen: Mapping[str, Chosen[Any] | None],
-    ) -> None:
-        self.populations = {role: given for role, given in populations.items() if given is not None}
-        self.complete = bool(populations) and len(self.populations) == len(populations)
-        self.chosen = {key: given.component for key, given in chosen.items() if given is not None}
-
-    def faults(self, *, scored: bool) -> list[Fault]:
-        record = self._record() if scored else ()
-        return [*self._sizes(), *self._collaboration(), *self._roles(), *record]
-
-    def _sizes(self) -> Iterator[Fault]:
-        for role, population in self.populations.items():
-            check = functools.partial(population.evolver.component.check, population.size)
-            yield from _refusal(("populations", role), check)
-
-    def _collaboration(self) -> Iterator[Fault]:
-        strategy = self.chosen.get("collaboration")
-        if strategy is None:
-            return
-        counts: set[int] = set()
-        for role, population in self.populations.items():
-            try:
-                counts.add(strategy.size(population.size))
-            except ConfigurationError as error:
-                yield Fault(("collaboration",), f"{error} (population '{role}')")
-                return
-        if len(self.populations) > 2 and len(counts) > 1:
-            listed = ", ".join(map(str, sorted(counts)))
-            message = f"populations of different sizes give different numbers of collaborators: {listed}"
-            yield Fault(("collaboration",), message)
-        if "aggregator" in self.chosen:
-            for count in sorted(counts):
-                check = functools.partial(self.chosen["aggregator"].check, count)
-                yield from _refusal(("aggregator",), check, involves=("collaboration",))
-
-    def _roles(self) -> Iterator[Fault]:
-        if not self.complete:
-            return
-        provided: list[str] = []
-        for role, population in self.populations.items():
-            encoder = population.encoder.component
-            path = ("populations", role, "encoder")
-            for needed in encoder.requires:
-                if needed not in provided:
-                    yield Fault(path, f"requires the role '{needed}', which no earlier population provides")
-            for given in encoder.provides:
-                if given in provided:
-                    yield Fault(path, f"provides the role '{given}', which an earlier population provides")
-            provided += encoder.provides
-        simulator = self.chosen.get("simulator")
-        for needed in simulator.requires if simulator else ():
-            if needed not in provided:
-                yield Fault(("simulator",), f"requires the role '{needed}', which no population provides")
-
-    def _record(self) -> Iterator[Fault]:
-        if "simulator" in self.chosen and "objective" in self.chosen:
-            check = functools.partial(self.chosen["simulator"].check, self.chosen["objective"].record)
-            yield from _refusal(("objective",), check, involves=("simulator",))
+        settings: dict[str, Any] = attrs.asdict(plain, recurse=False)
+        return PopulationConfig(**settings, **cast("dict[str, Any]", chosen))
 
 
 def _nested_options(class_: type[Any]) -> Iterator[tuple[str, str, bool]]:
@@ -362,12 +362,3 @@ def _violations(offer: Offer, component: Any) -> Iterator[str]:
         yield f"{where} lacks {', '.join(missing)}"
     if not attrs.inspect(type(component)).is_frozen:
         yield f"{where} is not a frozen attrs class, so its options could change during a run"
-
-
-def _refusal(
-    path: tuple[str, ...], check: Callable[[], object], involves: tuple[str, ...] = ()
-) -> Iterator[Fault]:
-    try:
-        check()
-    except ConfigurationError as error:
-        yield Fault(path, str(error), involves)

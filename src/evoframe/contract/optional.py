@@ -20,6 +20,7 @@ from evoframe.contract.protocols import (
     Aggregator,
     CollaborationRun,
     CollaborationStrategy,
+    Credit,
     Encoder,
     Evolver,
     EvolverRun,
@@ -39,6 +40,7 @@ from evoframe.contract.values import (
 )
 
 __all__ = [
+    "CORE_MEASURES",
     "SupportsArrayTypes",
     "SupportsBatches",
     "SupportsBitGeneration",
@@ -48,6 +50,7 @@ __all__ = [
     "SupportsEach",
     "SupportsExemptions",
     "SupportsExport",
+    "SupportsFitnessUnit",
     "SupportsGeometry",
     "SupportsGraph",
     "SupportsInputNames",
@@ -70,13 +73,22 @@ __all__ = [
     "SupportsWholeDesigns",
     "SupportsWindow",
     "Variant",
+    "array_types_of",
+    "batch_size_of",
     "bit_generation_of",
+    "measures_of_designs",
+    "measures_of_simulations",
     "unit_of",
+    "wanted_by",
     "whole_of",
     "window_of",
 ]
 
 S = TypeVar("S", bound=Simulator)
+
+CORE_MEASURES = ("age", "genome-size", "novelty")
+"""Measures that the core supplies: age in turns, number of genes, and the mean distance of the decoded part
+to the nearest 15 of the population (novelty search, Lehman and Stanley 2011, without an archive)."""
 
 
 @runtime_checkable
@@ -385,8 +397,8 @@ class SupportsGraph(Evolver, Protocol):
 class SupportsWants(Evolver, Protocol):
     """An evolver that uses measures besides the fitness, such as further objectives.
 
-    The core supplies ``age``, ``genome-size`` and ``novelty``; encoder, objective and simulator may supply
-    others. A configuration in which one is missing is refused.
+    The core supplies those of :data:`CORE_MEASURES`; encoders, objective and simulator may supply others. A
+    configuration in which one is missing is refused.
     """
 
     @property
@@ -437,6 +449,15 @@ class SupportsOutcomeMeasures(Objective, Protocol):
 
 
 @runtime_checkable
+class SupportsFitnessUnit(Credit, Protocol):
+    """A credit whose fitness does not have the unit of the scores."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the fitness; empty if it has none."""
+
+
+@runtime_checkable
 class SupportsUnit(Objective, Protocol):
     """An objective that states the unit of its scores."""
 
@@ -480,6 +501,33 @@ def whole_of(simulator: S) -> S:
 def unit_of(objective: Objective) -> str:
     """Return the unit of an objective's scores; empty if it states none."""
     return str(objective.unit) if isinstance(objective, SupportsUnit) else ""
+
+
+def wanted_by(evolver: Evolver) -> tuple[str, ...]:
+    """Return the names of the measures that an evolver uses besides the fitness."""
+    return tuple(evolver.wants) if isinstance(evolver, SupportsWants) else ()
+
+
+def array_types_of(encoder: Encoder) -> Mapping[str, ArrayType]:
+    """Return types and shapes of the arrays that an encoder declares: role -> type; empty if none."""
+    return encoder.array_types if isinstance(encoder, SupportsArrayTypes) else {}
+
+
+def measures_of_designs(encoder: Encoder) -> tuple[str, ...]:
+    """Return the names of the measures that an encoder supplies."""
+    return encoder.measures if isinstance(encoder, SupportsDesignMeasures) else ()
+
+
+def measures_of_simulations(simulator: Simulator, objective: Objective) -> tuple[str, ...]:
+    """Return the names of the measures that a simulator and an objective supply."""
+    by_simulator = simulator.measures if isinstance(simulator, SupportsMeasures) else ()
+    by_objective = objective.measures if isinstance(objective, SupportsOutcomeMeasures) else ()
+    return (*by_simulator, *by_objective)
+
+
+def batch_size_of(simulator: Simulator, otherwise: int) -> int:
+    """Return the number of designs that a simulator should receive at once."""
+    return simulator.batch_size if isinstance(simulator, SupportsBatches) else otherwise
 
 
 def bit_generation_of(component: Any) -> int:

@@ -36,6 +36,8 @@ __all__ = [
     "ExecutorRun",
     "Network",
     "Objective",
+    "RoleProvider",
+    "RoleRun",
     "Simulator",
 ]
 
@@ -177,7 +179,7 @@ class Encoder(Protocol):
 
     @property
     def inputs(self) -> int:
-        """Number of inputs that a network needs."""
+        """Number of inputs that a network needs; 0 if it is evaluated at points without coordinates."""
 
     @property
     def outputs(self) -> int:
@@ -319,6 +321,48 @@ class Objective(Protocol):
 
     def score(self, outcome: Outcome) -> float:
         """Return the score of an *outcome* that did not diverge."""
+
+
+@runtime_checkable
+class RoleRun(Protocol):
+    """A role that no population evolves, during a run.
+
+    Laws: roles are as declared; equal designs and states of the generator give equal results.
+    """
+
+    def fill(self, design: Design, rng: np.random.Generator) -> Design:
+        """Return *design* with the provided roles added; random ones are drawn from *rng*."""
+
+    def state(self) -> Any:
+        """Return what must be the same when the run is resumed, as JSON values, such as a file's checksum."""
+
+    def restore(self, state: Any) -> None:
+        """Compare with what :meth:`state` returned when the run started.
+
+        Raises:
+            ValueError: It differs; the message says what changed.
+        """
+
+
+@runtime_checkable
+class RoleProvider(Protocol):
+    """Provides roles of designs that no population evolves: fixed ones, or random ones."""
+
+    @property
+    def requires(self) -> tuple[str, ...]:
+        """Roles that a design must have before; without any, these roles are provided before all others."""
+
+    @property
+    def provides(self) -> tuple[str, ...]:
+        """Roles that are added to a design."""
+
+    def start(self, simulator: Simulator) -> RoleRun:
+        """Read what is necessary, for designs of this *simulator*.
+
+        Raises:
+            ConfigurationError: The simulator cannot provide it.
+            InputError: A file cannot be read.
+        """
 
 
 @runtime_checkable

@@ -80,14 +80,26 @@ class ArrayType:
 
     Attributes:
         dtype: Name of its dtype, such as ``uint8``.
-        shape: Lengths of its axes.
+        shape: Lengths of its axes; ``None`` for any length.
     """
 
     dtype: str
-    shape: tuple[int, ...]
+    shape: tuple[int | None, ...]
 
     def __str__(self) -> str:
-        return f"{self.dtype}{list(self.shape)}"
+        lengths = ", ".join("any" if length is None else str(length) for length in self.shape)
+        return f"{self.dtype}[{lengths}]"
+
+    def accepts(self, other: ArrayType) -> bool:
+        """Return whether an array can have both types."""
+        return (
+            self.dtype == other.dtype
+            and len(self.shape) == len(other.shape)
+            and all(
+                None in (own, given) or own == given
+                for own, given in zip(self.shape, other.shape, strict=True)
+            )
+        )
 
     @classmethod
     def of(cls, array: NDArray[Any]) -> ArrayType:
@@ -237,10 +249,12 @@ class Judged:
         member: The individual; its fitness is ``None`` if it is new.
         collaborators: Ids of the collaborators from the other population in its last evaluation; empty if it
             is new.
+        index: Its index in its population, which is its place if populations have a shape.
     """
 
     member: Member
     collaborators: tuple[int, ...] = ()
+    index: int = attrs.field(kw_only=True)
 
 
 @attrs.frozen(eq=False)

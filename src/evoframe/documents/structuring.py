@@ -8,11 +8,13 @@ import math
 import numbers
 import re
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 import attrs
 import numpy as np
 from cattrs import (
+    BaseValidationError,
     ClassValidationError,
     Converter,
     ForbiddenExtraKeysError,
@@ -110,6 +112,7 @@ def _converter() -> Converter:
         functools.partial(_is_a, tuple), functools.partial(_tuple, converter)
     )
     converter.register_structure_hook_func(functools.partial(_is_a, dict), _table)
+    converter.register_structure_hook_func(_is_union, functools.partial(_union, converter))
     converter.register_structure_hook_factory(attrs.has, functools.partial(_class_hook, converter))
     converter.register_structure_hook_func(_is_generic, _instance)
     converter.register_unstructure_hook_func(_has_table, lambda instance: instance.as_table())
@@ -134,6 +137,15 @@ def _instance(value: Any, type_: Any) -> Any:
 
 def _is_a(origin: Any, type_: Any) -> bool:
     return get_origin(type_) is origin
+
+
+def _is_union(type_: Any) -> bool:
+    """Return whether several types are allowed; cattrs handles one type or ``None``."""
+    return get_origin(type_) in (Union, UnionType) and len(_alternatives(type_)) > 1
+
+
+def _alternatives(union: Any) -> list[Any]:
+    return [type_ for type_ in get_args(union) if type_ is not NoneType]
 
 
 def _bool(value: Any, _: Any) -> bool:
@@ -163,11 +175,43 @@ def _str(value: Any, _: Any) -> str:
 
 
 def _literal(value: Any, target: Any) -> Any:
-    choices = get_args(target)
-    if value not in choices:
-        listed = ", ".join(found(choice) for choice in choices)
-        raise ValueError(f"expected one of {listed}, found {found(value)}")
+    if value not in get_args(target):
+        raise ValueError(f"expected {_expected(target)}, found {found(value)}")
     return value
+
+
+def _union(converter: Converter, value: Any, target: Any) -> Any:
+    """Return *value* as the first of the types that accepts it.
+
+    Of a list or table with faults inside, only these are reported; any other value has none of the types.
+    """
+    if value is None and NoneType in get_args(target):
+        return None
+    for type_ in _alternatives(target):
+        try:
+            return converter.structure(value, type_)
+        except BaseValidationError:
+            raise
+        except (TypeError, ValueError):
+            continue
+    expected = " or ".join(_expected(type_) for type_ in _alternatives(target))
+    raise TypeError(f"expected {expected}, found {found(value)}")
+
+
+_EXPECTED = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    str: "a string",
+    tuple: "a list",
+}
+
+
+def _expected(type_: Any) -> str:
+    """Return a type in words; a type without a name of its own is written as a table."""
+    if _is_a(Literal, type_):
+        return f"one of {', '.join(found(choice) for choice in get_args(type_))}"
+    return _EXPECTED.get(get_origin(type_) or type_, "a table")
 
 
 def _table(value: Any, _: Any) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import numbers
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TypeVar
 
@@ -20,6 +20,8 @@ from evoframe.contract import (
     Record,
     Score,
     Simulator,
+    SupportsOutcomeMeasures,
+    batch_size_of,
     blaming,
     window_of,
 )
@@ -29,7 +31,7 @@ __all__ = ["Evaluator", "score_designs"]
 
 T = TypeVar("T")
 
-_LARGEST_BATCH = 12  # designs; they share the overhead of a call and the preparation of a common body
+_BATCH = 4  # designs, unless the simulator says otherwise; they share the overhead of a call
 _BATCHES_PER_WORKER = 2  # can be taken before the first result: the current one, and the next
 
 
@@ -41,12 +43,14 @@ class Evaluator:
         simulator: Simulates new designs.
         objective: Defines the samples to record, and scores outcomes.
         workers: Started workers, which process batches in parallel.
+        measures: Names of the measures by simulator and objective that scores contain.
         simulations: Number of designs simulated so far.
     """
 
     simulator: Simulator
     objective: Objective
     workers: ExecutorRun
+    measures: tuple[str, ...] = ()
     simulations: int = 0
     _cache: dict[bytes, Score] = attrs.field(factory=dict, init=False, repr=False)
 
@@ -67,7 +71,7 @@ class Evaluator:
         keys: list[bytes] = []
         interlude = _Interlude(on_simulating)
         with blaming("executor"), _locating_designs(keys):
-            simulation = _Simulation(self.simulator, self.objective)
+            simulation = _Simulation(self.simulator, self.objective, self.measures)
             batches = interlude.inserted(self._batches(designs, count, keys), self._batches_ahead)
             for scores in self.workers.map(simulation, batches):
                 self._cache |= scores
@@ -89,6 +93,8 @@ class Evaluator:
         key_of: dict[Design, bytes] = {}  # designs are compared by identity
         known: set[bytes] = set()
         batch: dict[bytes, Design] = {}
+        with blaming("simulator"):
+            largest = batch_size_of(self.simulator, _BATCH)
         for design in designs:
             if design not in key_of:
                 key_of[design] = self._key(design, record)
@@ -96,7 +102,7 @@ class Evaluator:
             if key not in known and key not in self._cache:
                 known.add(key)
                 batch[key] = design
-            if batch and len(batch) >= self._batch_size(count - len(keys)):
+            if batch and len(batch) >= self._batch_size(count - len(keys), largest):
                 yield batch
                 batch = {}
         if batch:
@@ -108,9 +114,9 @@ class Evaluator:
         workers = self.workers.workers
         return _BATCHES_PER_WORKER * workers - 1 if workers > 1 else 0
 
-    def _batch_size(self, left: int) -> int:
+    def _batch_size(self, left: int, largest: int) -> int:
         """Return the size of the next batch: they shrink, so that all workers finish together."""
-        return min(max(1, left // self.workers.workers), _LARGEST_BATCH)
+        return min(max(1, left // self.workers.workers), largest)
 
     def _key(self, design: Design, record: Record) -> bytes:
         with blaming("simulator"):
@@ -164,11 +170,12 @@ class _Simulation:
 
     simulator: Simulator
     objective: Objective
+    measures: tuple[str, ...]
 
     def __call__(self, batch: Mapping[bytes, Design]) -> dict[bytes, Score]:
         try:
             scores = score_designs(
-                self.simulator, list(batch.values()), self.objective.record, self.objective
+                self.simulator, list(batch.values()), self.objective.record, self.objective, self.measures
             )
         except ComponentError as error:
             raise attrs.evolve(error, keys=tuple(batch)) from error
@@ -176,9 +183,20 @@ class _Simulation:
 
 
 def score_designs(
-    simulator: Simulator, designs: Sequence[Design], record: Record, objective: Objective
+    simulator: Simulator,
+    designs: Sequence[Design],
+    record: Record,
+    objective: Objective,
+    measures: Collection[str] = (),
 ) -> list[Score]:
     """Simulate *designs* and return the score of each; repeated designs are simulated repeatedly.
+
+    Args:
+        simulator: Simulates the designs.
+        designs: The designs.
+        record: Samples to record.
+        objective: Scores the outcomes.
+        measures: Names of further measures by simulator and objective that the scores shall contain.
 
     Raises:
         ComponentError: Simulator or objective failed or returned an invalid result.
@@ -187,10 +205,10 @@ def score_designs(
         outcomes = list(simulator.simulate(designs, record))
     if len(outcomes) != len(designs):
         raise ComponentError("simulator", f"returned {len(outcomes)} outcomes for {len(designs)} designs")
-    return [_score(outcome, record, objective) for outcome in outcomes]
+    return [_score(outcome, record, objective, measures) for outcome in outcomes]
 
 
-def _score(outcome: Outcome, record: Record, objective: Objective) -> Score:
+def _score(outcome: Outcome, record: Record, objective: Objective, measures: Collection[str]) -> Score:
     if not isinstance(outcome, Outcome):
         raise ComponentError("simulator", f"returned {type(outcome).__name__}, expected Outcome")
     if outcome.diverged_at is not None:
@@ -206,7 +224,27 @@ def _score(outcome: Outcome, record: Record, objective: Objective) -> Score:
     if not isinstance(score, numbers.Real) or not math.isfinite(score):
         problem = f"returned the score {score!r}, expected a finite number"
         raise ComponentError("objective", problem)
-    return Score(float(score), window=window)
+    return Score(float(score), window=window, measures=_measures(outcome, objective, measures))
+
+
+def _measures(outcome: Outcome, objective: Objective, names: Collection[str]) -> dict[str, float]:
+    """Return the measures of an outcome with these names, each from the component that declares it."""
+    if not names:
+        return {}
+    by_objective: Mapping[str, float] = {}
+    declared: Collection[str] = ()
+    if isinstance(objective, SupportsOutcomeMeasures):
+        with blaming("objective"):
+            by_objective, declared = objective.measure(outcome), objective.measures
+    found: dict[str, float] = {}
+    for name in names:
+        key, supplied = ("objective", by_objective) if name in declared else ("simulator", outcome.measures)
+        value = supplied.get(name)
+        if not isinstance(value, numbers.Real) or not math.isfinite(value):
+            problem = f"returned {value!r} for the measure '{name}', expected a finite number"
+            raise ComponentError(key, problem)
+        found[name] = float(value)
+    return found
 
 
 def _refuse_tracks(outcome: Outcome, record: Record) -> None:

@@ -11,7 +11,7 @@ __all__ = ["CHAINED", "SINGLE", "Checksums"]
 
 Row = Sequence[Any]
 
-CHAINED = ("turns", "individuals", "pairs", "best_pairs", "workload", "resumes")
+CHAINED = ("turns", "individuals", "measures", "pairs", "best_pairs", "workload", "resumes")
 """Append-only tables: one checksum for all rows, in the order of their keys."""
 
 SINGLE = ("meta", "state")

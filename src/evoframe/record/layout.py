@@ -15,7 +15,7 @@ __all__ = [
     "schema",
 ]
 
-RUN_FORMAT = 2
+RUN_FORMAT = 3
 """Version of the format of a run's directory; champion.json has its own."""
 
 CHAMPION_FILE = "champion.json"
@@ -42,6 +42,10 @@ CREATE TABLE individuals (
     turn INTEGER, population TEXT, position INTEGER, genome_id INTEGER NOT NULL, species INTEGER,
     genome_size INTEGER NOT NULL, age INTEGER NOT NULL, fitness REAL NOT NULL, diverged INTEGER NOT NULL,
     PRIMARY KEY (turn, population, position)
+) WITHOUT ROWID;
+CREATE TABLE measures (
+    turn INTEGER, population TEXT, position INTEGER, name TEXT, value REAL NOT NULL,
+    PRIMARY KEY (turn, population, position, name)
 ) WITHOUT ROWID;
 CREATE TABLE pairs (
     turn INTEGER, pair INTEGER, {roles}, score REAL, diverged_at INTEGER,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from evoframe._version import __version__
 from evoframe.contract import (
     Chosen,
     RunConfig,
+    Source,
     SupportsBitGeneration,
     SupportsProvenance,
     bit_generation_of,
@@ -30,13 +31,18 @@ __all__ = [
 
 _GENERATIONS = "bit_generations"
 _LOCAL = "local_plugins"
+_OBSERVERS = "observers"
 
 
-def provenance_of(config: RunConfig) -> Tree:
+def provenance_of(config: RunConfig, observers: Sequence[Source] = ()) -> Tree:
     """Return the table ``[provenance]``: versions, machine type, and the source of each component.
 
     Local plugins have no version; their source has a checksum instead. Components that state the generation
     of their results have it in the table ``bit_generations``.
+
+    Args:
+        config: The configuration.
+        observers: Plugins that observe the run.
     """
     libraries = {"python": platform.python_version(), "numpy": np.__version__}
     for _, chosen in config.components():
@@ -60,6 +66,7 @@ def provenance_of(config: RunConfig) -> Tree:
         "components": {key: str(chosen.source) for key, chosen in config.components()},
         **({_GENERATIONS: generations} if generations else {}),
         **({_LOCAL: local} if local else {}),
+        **({_OBSERVERS: sorted(map(str, observers))} if observers else {}),
     }
 
 
@@ -70,6 +77,7 @@ def changed_provenance(run: Run, config: RunConfig) -> list[str]:
         now.pop(_LOCAL, None)
     for tables in (then, now):
         tables.pop(_GENERATIONS, None)
+        tables.pop(_OBSERVERS, None)  # the result does not depend on them
     return [*changed_generations(run, config).values(), *differences(then, now)]
 
 

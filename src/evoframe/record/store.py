@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 import attrs
 
-from evoframe.contract import Design, Turn
+from evoframe.contract import Design, PopulationReport, Turn
 from evoframe.errors import ComponentError, InputError, RunError
 from evoframe.files import Lock, json_text, remove, write_atomically, write_json
 from evoframe.record.champion import champion_document
@@ -152,6 +152,7 @@ class Store:
                     for i, m in enumerate(r.members)
                 ),
             )
+            self._insert("measures", (row for r in reports for row in _measures(index, r)))
             pairs = enumerate(turn.pairs)
             self._insert("pairs", ((index, i, *p.genomes, p.score, p.diverged_at) for i, p in pairs))
             self._insert("workload", [(index, work.pairs, work.simulations, work.seconds)])
@@ -256,6 +257,14 @@ class Store:
                 self._database.execute("PRAGMA wal_checkpoint(PASSIVE)")
             self.update_champion()
             self._synced = time.monotonic()
+
+
+def _measures(turn: int, report: PopulationReport) -> Iterator[tuple[Any, ...]]:
+    """Yield a row for each measure of each member, in the order of their keys."""
+    names = sorted(report.measures)
+    for position in range(len(report.members)):
+        for name in names:
+            yield turn, report.population, position, name, report.measures[name][position]
 
 
 def _as_stored(row: tuple[Any, ...]) -> list[Any]:

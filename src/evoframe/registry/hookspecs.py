@@ -15,10 +15,12 @@ import pluggy
 from evoframe.contract import (
     Aggregator,
     CollaborationStrategy,
+    Credit,
     Encoder,
     Evolver,
     Executor,
     Objective,
+    RoleProvider,
     Simulator,
     Turn,
 )
@@ -69,8 +71,8 @@ def evoframe_strategies() -> Mapping[str, type[CollaborationStrategy]]:  # type:
 
 
 @hookspec
-def evoframe_aggregators() -> Mapping[str, type[Aggregator]]:  # type: ignore[empty-body]
-    """Offer fitness aggregators.
+def evoframe_aggregators() -> Mapping[str, type[Aggregator | Credit]]:  # type: ignore[empty-body]
+    """Offer fitness aggregators: of the scores of an individual, or of all meetings of a turn.
 
     Returns:
         Name in configuration files -> frozen attrs class, whose fields are the options.
@@ -104,6 +106,17 @@ def evoframe_objectives() -> Mapping[str, type[Objective]]:  # type: ignore[empt
 @hookspec
 def evoframe_executors() -> Mapping[str, type[Executor]]:  # type: ignore[empty-body]
     """Offer executors, which distribute simulations over workers.
+
+    Returns:
+        Name in configuration files -> frozen attrs class, whose fields are the options.
+
+    .. versionadded:: 0.1
+    """
+
+
+@hookspec
+def evoframe_roles() -> Mapping[str, type[RoleProvider]]:  # type: ignore[empty-body]
+    """Offer providers of roles that no population evolves.
 
     Returns:
         Name in configuration files -> frozen attrs class, whose fields are the options.

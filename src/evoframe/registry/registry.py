@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 import pluggy
 
-from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, Source, protocols
+from evoframe.contract import COMPONENTS, POPULATION_COMPONENTS, ROLE_COMPONENTS, Source, protocols
 from evoframe.errors import ConfigurationError, PluginError
 from evoframe.messages import suggestion
 from evoframe.registry import hookspecs
@@ -50,16 +50,22 @@ KINDS: Mapping[str, Kind] = {
     "evolver": Kind("evoframe_evolvers", protocols.Evolver),
     "executor": Kind("evoframe_executors", protocols.Executor),
     "objective": Kind("evoframe_objectives", protocols.Objective),
+    "role": Kind("evoframe_roles", protocols.RoleProvider),
     "simulator": Kind("evoframe_simulators", protocols.Simulator),
     "strategy": Kind("evoframe_strategies", protocols.CollaborationStrategy),
 }
 """Name of a kind -> the kind."""
 
+OBSERVATIONS = ("evoframe_run_started", "evoframe_turn_finished", "evoframe_run_finished")
+"""Hooks with which a plugin observes a run."""
+
 _NOUNS = {"strategy": "collaboration strategy"}  # kind -> its name in messages, if different
 
-_KEYS = {kind: key for key, kind in COMPONENTS.items()} | {
-    kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()
-}  # kind -> configuration key
+_KEYS = (
+    {kind: f"populations.ROLE.{key}" for key, kind in POPULATION_COMPONENTS.items()}
+    | {kind: f"roles.NAME.{key}" for key, kind in ROLE_COMPONENTS.items()}
+    | {kind: key for key, kind in COMPONENTS.items()}
+)  # kind -> configuration key
 
 
 @attrs.frozen
@@ -99,6 +105,7 @@ class Plugins:
 
     manager: pluggy.PluginManager = attrs.field(factory=_new_manager)
     offers: list[Offer] = attrs.field(factory=list)
+    observers: list[Source] = attrs.field(factory=list)
     skipped: list[Skipped] = attrs.field(factory=list)
 
     def add(self, plugin: object, source: Source) -> None:
@@ -114,6 +121,8 @@ class Plugins:
             self.manager.register(plugin, name=name)
             _check_hooks(self.manager, plugin)
             self.offers += list(_offers(self.manager, plugin, source))
+            if any(caller.name in OBSERVATIONS for caller in self.manager.get_hookcallers(plugin) or ()):
+                self.observers.append(source)
         except BaseException as error:
             if self.manager.is_registered(plugin):
                 self.manager.unregister(plugin)
@@ -131,6 +140,7 @@ class Plugins:
             distribution, entry_point = name.rsplit(":", 1)
             if plugin is not None and normalized(distribution) not in blocked:
                 kept.manager.register(plugin, name=f"{distribution}:{entry_point}")
+        kept.observers = [s for s in self.observers if normalized(s.distribution) not in blocked]
         kept.offers = [o for o in self.offers if normalized(o.source.distribution) not in blocked]
         return kept
 

@@ -2,8 +2,8 @@
 
 from evoframe.runs.doctor import Check, State, check_installation, check_run
 from evoframe.runs.execution import Execution, verify_champion
+from evoframe.runs.restoring import configuration_of
 from evoframe.runs.resuming import (
-    configuration_of,
     is_finished,
     is_verified,
     reopen,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -14,7 +14,7 @@ import attrs
 from evoframe.config import load_config
 from evoframe.contract import RunConfig, whole_of
 from evoframe.errors import EvoframeError, InputError
-from evoframe.evolution import assemble, score_designs
+from evoframe.evolution import assemble, score_designs, timing_of
 from evoframe.files import LOCK_FILE, acquire_lock, parsed_json
 from evoframe.messages import full_text
 from evoframe.record import (
@@ -28,7 +28,8 @@ from evoframe.record import (
     provenance_of,
 )
 from evoframe.registry import Plugins
-from evoframe.runs.resuming import configuration_of, restore
+from evoframe.runs.blame import assembled
+from evoframe.runs.restoring import configuration_of, restore
 
 __all__ = ["Check", "State", "check_installation", "check_run"]
 
@@ -173,7 +174,7 @@ def _recorded(resume: Mapping[str, Any]) -> list[str]:
 def _turns(run: Run, config: RunConfig) -> str:
     for table, fault in _faults_of_turns(run, config):
         raise InputError(fault, key=table)
-    last, length = run.last_turn(), config.run.generations * len(config.populations)
+    last, length = run.last_turn(), timing_of(config).length
     if run.finished():
         return f"finished after {length} turns"
     done = "no turn is saved" if last is None else f"saved up to turn {last} of {length}"
@@ -186,8 +187,9 @@ def _faults_of_turns(run: Run, config: RunConfig) -> Iterator[tuple[str, str]]:
     turns = range(len(work))
     if [row["turn"] for row in work] != list(turns):
         yield "workload", "turns are missing"
-    evaluated = {(turn, role) for turn in turns for role in _evaluated(turn, roles, config)}
-    if {(row["turn"], row["population"]) for row in run.turns()} != evaluated:
+    found = {(row["turn"], row["population"]) for row in run.turns()}
+    evaluated = {(turn, role) for turn in turns for role in _evaluated(turn, roles, config, found)}
+    if found != evaluated:
         yield "turns", "the evaluated populations differ from those whose turn it was"
     members = Counter((row["turn"], row["population"]) for row in run.individuals())
     if members != {(turn, role): config.populations[role].size for turn, role in evaluated}:
@@ -198,13 +200,18 @@ def _faults_of_turns(run: Run, config: RunConfig) -> Iterator[tuple[str, str]]:
     yield from _faults_of_best_pairs(run.table("best_pairs"), run.pairs())
 
 
-def _evaluated(turn: int, roles: list[str], config: RunConfig) -> Iterable[str]:
+def _evaluated(
+    turn: int, roles: list[str], config: RunConfig, found: Collection[tuple[int, str]]
+) -> Iterable[str]:
     """Return the populations that are evaluated in a turn."""
+    timing = timing_of(config)
     if turn == 0:
         return roles
-    if turn > config.run.generations * len(roles):
+    if turn > timing.length:
         return []  # the turn of the final pair
-    return [roles[(turn - 1) % len(roles)]]
+    if timing.kind == "asynchronous":  # the order depends on the numbers of pairs: any one
+        return [role for role in roles if (turn, role) in found][:1]
+    return [roles[index] for index in timing.reproducing(turn, ())]
 
 
 def _faults_of_best_pairs(
@@ -225,8 +232,8 @@ def _faults_of_best_pairs(
 
 
 def _state(run: Run, config: RunConfig) -> str:
-    with assemble(config) as coevolution:
-        restore(coevolution, run)
+    with assembled(config) as coevolution:
+        restore(coevolution, run, config)
     return "can be restored"
 
 

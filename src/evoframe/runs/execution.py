@@ -10,7 +10,7 @@ from typing import Any
 
 import attrs
 
-from evoframe.contract import RunConfig, SupportsVariants, Turn, unit_of
+from evoframe.contract import RunConfig, SupportsVariants, Turn, fitness_unit_of, unit_of
 from evoframe.designs import verify_designs
 from evoframe.errors import ComponentError, RunError
 from evoframe.evolution import Coevolution
@@ -18,6 +18,7 @@ from evoframe.files import locked
 from evoframe.messages import cause_of, quantity
 from evoframe.record import Run, Store, Verification, keep_verification
 from evoframe.registry import Observers, Plugins
+from evoframe.runs.blame import completed
 
 __all__ = ["Execution", "verify_champion"]
 
@@ -76,12 +77,11 @@ class Execution:
         return verify_champion(self.config, run)
 
     def _play(self, observers: Observers, stop: Callable[[], bool]) -> None:
-        unit = unit_of(self.config.objective.component)
-        saving = _Saving(self._store, self._coevolution.state, observers, unit)
+        saving = _Saving(self._store, self._coevolution.state, observers, self.config)
         self._coevolution.on_simulating = saving.complete
         try:
             for turn in self._coevolution:
-                saving.begin(turn)
+                saving.begin(turn, self._coevolution.reproducing_next)
                 if stop():
                     break
         finally:
@@ -99,21 +99,12 @@ class Execution:
         try:
             yield
         except ComponentError as error:
-            complete = self._completed(error)
+            complete = completed(error, self.config, f"turn {self._store.last_turn + 1}")
             complete.add_note(hint)
             raise complete from error
         except RunError as error:
             error.add_note(hint)
             raise
-
-    def _completed(self, error: ComponentError) -> ComponentError:
-        """Return the error with the component's name and plugin, and the turn."""
-        chosen = dict(self.config.components()).get(error.component)
-        if chosen is None:
-            return attrs.evolve(error)
-        turn = f"turn {self._store.last_turn + 1}"
-        concerns = ", ".join(part for part in (turn, error.concerns) if part)
-        return attrs.evolve(error, offered=f"'{chosen.name}' (plugin {chosen.source})", concerns=concerns)
 
 
 @attrs.define
@@ -126,14 +117,14 @@ class _Saving:
     _store: Store
     _state: Callable[[Collection[str]], Mapping[str, Any]]
     _observers: Observers
-    _unit: str
+    _config: RunConfig
     _unsaved: Turn | None = None
 
-    def begin(self, turn: Turn) -> None:
-        """Take over a turn."""
+    def begin(self, turn: Turn, reproducing_next: Collection[str]) -> None:
+        """Take over a turn; populations that reproduce in the next one change their part of the state."""
         self.complete()  # the turn before, if no worker has simulated anything since
         self._unsaved = turn
-        if len(turn.reports) > 1:  # the next population to reproduce will change its part of the state
+        if any(report.population in reproducing_next for report in turn.reports):
             self.complete()
 
     def complete(self) -> None:
@@ -143,7 +134,7 @@ class _Saving:
         turn = self._unsaved
         self._unsaved = None  # even if it cannot be saved
         self._store.save(turn, self._state([report.population for report in turn.reports]))
-        _log_turn(turn, self._unit)
+        _log_turn(turn, self._config)
         self._observers.tell("evoframe_turn_finished", turn=turn)
 
 
@@ -170,10 +161,12 @@ def verify_champion(config: RunConfig, run: Run) -> Verification | None:
     return verification
 
 
-def _log_turn(turn: Turn, unit: str) -> None:
+def _log_turn(turn: Turn, config: RunConfig) -> None:
     if turn.best_pair is not None:
+        unit = unit_of(config.objective.component)
         _log.info("turn %d: new best pair, score %s", turn.index, quantity(turn.best_pair.score, unit))
     for report in turn.reports:
+        unit = fitness_unit_of(config, report.population)
         best, mean = quantity(report.best, unit), quantity(report.mean, unit)
         _log.debug("turn %d: %s: best fitness %s, mean %s", turn.index, report.population, best, mean)
 

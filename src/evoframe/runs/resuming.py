@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from evoframe.config import Layer, layers_in, layers_of, resolve_layers
+from evoframe.config import Layer, layers_of
 from evoframe.contract import RunConfig, SupportsVariants
-from evoframe.documents import differences
-from evoframe.errors import ConfigurationError, InputError
-from evoframe.evolution import Coevolution, assemble
+from evoframe.errors import ConfigurationError
 from evoframe.files import Lock, acquire_lock, is_leftover, parsed_json, released_on_error, remove
 from evoframe.record import (
     CHAINED,
-    CONFIG_FILE,
     SINGLE,
     Run,
     Store,
@@ -21,15 +18,16 @@ from evoframe.record import (
     open_run,
 )
 from evoframe.registry import Plugins, discover
+from evoframe.runs.blame import assembled
 from evoframe.runs.execution import Execution, verify_champion
+from evoframe.runs.restoring import configuration_of, listed, restore
 from evoframe.runs.starting import open_store
+from evoframe.runs.warm_start import starting_genomes
 
 __all__ = [
-    "configuration_of",
     "is_finished",
     "is_verified",
     "reopen",
-    "restore",
     "resume",
     "verify_if_missing",
 ]
@@ -136,10 +134,12 @@ def _reopen(
     changes = _changes(run, config, allowed=allowed)
     if run.begun:
         run.read_all()
-    coevolution = assemble(config)
+    started = run.begun and run.last_turn() is not None
+    genomes = {} if started else starting_genomes(config, plugins)
+    coevolution = assembled(config, genomes)
     try:
         if run.begun:
-            restore(coevolution, run)
+            restore(coevolution, run, config)
         run.close()  # a reader would block writing
         store = open_store(run.directory, config, lock)
         if run.begun:
@@ -151,31 +151,6 @@ def _reopen(
         raise
     usable = plugins.without(config.plugins.block)
     return Execution(config, usable, run.directory, run.config, coevolution, store)
-
-
-def configuration_of(run: Run, overrides: Sequence[str | Layer], plugins: Plugins) -> RunConfig:
-    """Return the resolved configuration of a run.
-
-    Settings that determine the result must be unchanged since the start, with and without the overrides.
-
-    Args:
-        run: The run.
-        overrides: Settings of the executor.
-        plugins: The available plugins.
-
-    Raises:
-        ConfigurationError: The configuration is invalid, or changed since the start; the text lists changes.
-        InputError: The run is damaged.
-    """
-    path = run.directory / CONFIG_FILE
-    layers = layers_in(run.config, str(path))
-    config = resolve_layers(layers.under(overrides), path.stem, plugins)
-    began = run.configuration() if run.begun else resolve_layers(layers, path.stem, plugins).deciding()
-    if others := differences(began, config.deciding()):
-        problem = "the configuration differs from that with which the run started"
-        todo = f"undo these changes, or start a new run: evoframe run {path}"
-        raise ConfigurationError(f"{_listed(problem, others)}\n  {todo}", source=run.directory)
-    return config
 
 
 def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
@@ -192,31 +167,8 @@ def _changes(run: Run, config: RunConfig, *, allowed: bool) -> list[str]:
         )
         command = f"evoframe resume {run.directory} --allow-different-versions"
         todo = f"to continue anyway (this is recorded): {command}"
-        raise ConfigurationError(f"{_listed(problem, changes)}\n  {todo}", source=run.directory)
+        raise ConfigurationError(f"{listed(problem, changes)}\n  {todo}", source=run.directory)
     return changes
-
-
-def _listed(problem: str, lines: Sequence[str]) -> str:
-    return "\n  ".join([f"{problem}:", *lines])
-
-
-def restore(coevolution: Coevolution, saved: Run) -> None:
-    """Restore the loop to the end of the last turn.
-
-    Raises:
-        InputError: The state is missing or invalid.
-    """
-    state, last = saved.state(), saved.last_turn()
-    if last is None and not state:
-        return
-    try:
-        coevolution.restore(state)
-    except Exception as error:
-        cause = f"missing {error}" if isinstance(error, KeyError) else str(error)
-        raise InputError(f"cannot be restored: {cause}", source=saved.directory, key="state") from error
-    if coevolution.turn != last:
-        problem = f"expected the state after turn {last}, found that after turn {coevolution.turn}"
-        raise InputError(problem, source=saved.directory, key="state")
 
 
 def _resume(store: Store, saved: Run, changes: Sequence[str]) -> None:

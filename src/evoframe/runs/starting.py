@@ -15,11 +15,12 @@ from evoframe.contract import RunConfig
 from evoframe.designs import export_all
 from evoframe.documents import as_read
 from evoframe.errors import InputError, NotEmptyError, OccupiedError
-from evoframe.evolution import assemble
 from evoframe.files import LOCK_FILE, Lock, acquire_lock, is_leftover, released_on_error, write_atomically
 from evoframe.record import CONFIG_FILE, Run, Store, open_run, provenance_of
 from evoframe.registry import Plugins, discover
+from evoframe.runs.blame import assembled
 from evoframe.runs.execution import Execution
+from evoframe.runs.warm_start import starting_genomes
 
 __all__ = ["open_store", "prepare", "run"]
 
@@ -80,10 +81,10 @@ def prepare(config: RunConfig, plugins: Plugins, out: Path | None = None) -> Exe
         InputError: The directory is not empty, or cannot be created.
     """
     usable = plugins.without(config.plugins.block)
-    coevolution = assemble(config)
+    coevolution = assembled(config, starting_genomes(config, plugins))
     try:
         directory = _default_directory(config) if out is None else _given_directory(out)
-        tables = as_read({**config.recorded(), "provenance": provenance_of(config)})
+        tables = as_read({**config.recorded(), "provenance": provenance_of(config, usable.observers)})
         return Execution(
             config, usable, directory, tables, coevolution, _new_store(directory, config, tables)
         )

@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import attrs
 
 from evoframe.config import Layer, Layers, layer_of, read_layers, resolve_layers
-from evoframe.contract import RunConfig, unit_of
+from evoframe.contract import RunConfig, sizes_of, unit_of
 from evoframe.documents import Tree
 from evoframe.errors import ConfigurationError
 from evoframe.evolution import first_meetings
@@ -73,21 +73,22 @@ class Cell:
 
     @functools.cached_property
     def pairs(self) -> int:
-        """Number of pairs that a run scores, including repeats, without the final pair."""
-        sizes = [population.size for population in self.config.populations.values()]
-        strategy = self.config.collaboration.component
+        """Largest number of pairs that a run scores, including repeats, without the final pair."""
+        config, populations = self.config, self.config.populations
         generation = 0
-        for index, size in enumerate(sizes):
+        for name, population in populations.items():
+            strategy = config.chosen_for(name, "collaboration")[1].component
+            teams = [max(sizes_of(strategy, p.size)) for other, p in populations.items() if other != name]
             # All other populations give the same number of teams: the configuration was validated.
-            [teams] = {strategy.size(other) for i, other in enumerate(sizes) if i != index}
-            generation += size * teams
-        return len(first_meetings(sizes)) + self.config.run.generations * generation
+            generation += population.size * population.turns * max(teams, default=1)
+        sizes = [population.size for population in populations.values()]
+        return len(first_meetings(sizes)) + config.run.generations * generation
 
     @property
     def individuals(self) -> int:
         """Number of individuals evaluated in all turns of a run."""
-        sizes = [population.size for population in self.config.populations.values()]
-        return (1 + self.config.run.generations) * sum(sizes)
+        populations = self.config.populations.values()
+        return sum(p.size * (1 + self.config.run.generations * p.turns) for p in populations)
 
     def seed(self, index: int) -> int:
         """Return the seed of a run; it does not depend on the other cells or on the number of runs."""

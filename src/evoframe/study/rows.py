@@ -132,7 +132,7 @@ def row_of(planned: Planned, run: Run) -> Row:
         InputError: The run is damaged.
     """
     work, summary = run.workload(), run.summary()
-    fitness, score = _fitness_curve(run), score_curve(run, len(planned.cell.config.populations))
+    fitness, score = _fitness_curve(run), score_curve(run)
     return Row(
         settings={key: shown(value) for key, value in planned.cell.settings},
         run=planned.index,
@@ -164,17 +164,30 @@ def _digest_of(path: Path) -> str:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from error
 
 
+def _turns_in_a_generation(run: Run) -> int:
+    if run.config["run"].get("timing") == "parallel":
+        return 1
+    return sum(table.get("turns", 1) for table in run.config["populations"].values())
+
+
 def _fitness_curve(run: Run) -> tuple[float, ...]:
     best: dict[int, float] = {}
+    turns = _turns_in_a_generation(run)
     for row in run.turns():
-        generation = row["generation"]
+        generation = -(-row["turn"] // turns)
         best[generation] = max(row["best"], best.get(generation, row["best"]))
     return tuple(best[generation] for generation in sorted(best))
 
 
-def score_curve(run: Run, populations: int) -> tuple[float, ...]:
-    """Return the best score so far at the end of each generation, after a turn of every population."""
-    ends = range(0, len(run.workload()), populations)
+def score_curve(run: Run) -> tuple[float, ...]:
+    """Return the best score so far at the end of each generation, in which each population has its turns.
+
+    That of the final pair belongs to the last generation.
+    """
+    turns, last = _turns_in_a_generation(run), len(run.workload()) - 1
+    ends = [*range(0, last + 1, turns)]
+    if last > run.config["run"]["generations"] * turns:
+        ends = [*range(0, last - 1, turns), last]
     found = run.table("best_pairs")
     return tuple(
         max((row["score"] for row in found if row["turn"] <= end), default=float("nan")) for end in ends

@@ -27,31 +27,41 @@ pytest.register_assert_rewrite(
         for module in (
             "aggregators",
             "components",
+            "credits",
             "encoders",
+            "encounters",
             "evolvers",
+            "evolving",
             "executors",
             "laws",
             "objectives",
+            "roles",
+            "seeding",
             "simulators",
             "strategies",
+            "strategy_runs",
         )
     )
 )
 
 from evoframe.testing.aggregators import AggregatorContract  # noqa: E402
+from evoframe.testing.credits import CreditContract  # noqa: E402
 from evoframe.testing.encoders import EncoderContract  # noqa: E402
 from evoframe.testing.evolvers import EvolverContract  # noqa: E402
 from evoframe.testing.executors import ExecutorContract  # noqa: E402
 from evoframe.testing.objectives import ObjectiveContract  # noqa: E402
+from evoframe.testing.roles import RoleProviderContract  # noqa: E402
 from evoframe.testing.simulators import SimulatorContract  # noqa: E402
 from evoframe.testing.strategies import CollaborationStrategyContract  # noqa: E402
 
 __all__ = [
     "AggregatorContract",
     "CollaborationStrategyContract",
+    "CreditContract",
     "EncoderContract",
     "EvolverContract",
     "ExecutorContract",
     "ObjectiveContract",
+    "RoleProviderContract",
     "SimulatorContract",
 ]

@@ -7,8 +7,9 @@ from typing import Any, ClassVar, Generic, TypeVar
 import attrs
 import pytest
 
+from evoframe.config import resolve_component
 from evoframe.contract import SupportsBitGeneration
-from evoframe.documents import structure, unstructure
+from evoframe.documents import unstructure
 
 __all__ = ["ComponentContract"]
 
@@ -59,9 +60,12 @@ class ComponentContract(Generic[C]):
             type(self.component)()  # type: ignore[call-arg, unused-ignore]
 
     def test_options_survive_a_configuration_file(self) -> None:
-        """A component read from the configuration that a run has written equals the original."""
+        """A component read from the configuration that a run has written equals the original.
+
+        Components among its options are read with the installed plugins.
+        """
         options = unstructure(self.component)
-        assert structure(options, type(self.component), ("component",)) == self.component, (
+        assert resolve_component(options, type(self.component), ("component",)) == self.component, (
             f"a component created from the written options {options} differs from the original"
         )
 

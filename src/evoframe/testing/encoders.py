@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from hypothesis import strategies as st
 
-from evoframe.contract import Design, Encoder, Network, SupportsInputNames, SupportsOutputNames
+from evoframe.contract import (
+    ArrayType,
+    Design,
+    Encoder,
+    Network,
+    SupportsArrayTypes,
+    SupportsDesignMeasures,
+    SupportsInputNames,
+    SupportsOutputNames,
+)
 from evoframe.testing.components import ComponentContract
 from evoframe.testing.laws import for_all, random_network, same_arrays
 
@@ -15,8 +26,8 @@ __all__ = ["EncoderContract"]
 class EncoderContract(ComponentContract[Encoder]):
     """The laws of an :class:`~evoframe.Encoder`.
 
-    If the encoder requires roles, override :meth:`design`. Names of inputs and outputs are tested if the
-    encoder has them.
+    If the encoder requires roles, override :meth:`design`. Names of inputs and outputs, types of arrays and
+    measures are tested if the encoder has them.
     """
 
     protocol = Encoder
@@ -46,8 +57,8 @@ class EncoderContract(ComponentContract[Encoder]):
         assert all(isinstance(role, str) for role in (*requires, *provides)), "roles must be strings"
 
     def test_a_network_has_inputs_and_outputs(self) -> None:
-        """A network has at least one input and one output."""
-        assert self.component.inputs >= 1, f"expected at least 1 input, found {self.component.inputs}"
+        """A network has at least one output; one without inputs is evaluated at points of shape (n, 0)."""
+        assert self.component.inputs >= 0, f"expected 0 or more inputs, found {self.component.inputs}"
         assert self.component.outputs >= 1, f"expected at least 1 output, found {self.component.outputs}"
 
     def test_every_input_and_output_has_a_name(self) -> None:
@@ -128,6 +139,39 @@ class EncoderContract(ComponentContract[Encoder]):
             assert same_arrays(kept, given.roles), (
                 "decode() must keep the roles of the given design unchanged"
             )
+
+        for_all(law, network=self.networks())
+
+    def test_arrays_have_the_declared_types(self) -> None:
+        """Arrays of the roles in ``array_types`` have the declared types and shapes."""
+        component = self.component
+        if not isinstance(component, SupportsArrayTypes):
+            return
+        declared = component.array_types
+        unknown = sorted(declared.keys() - {*component.requires, *component.provides})
+        assert not unknown, f"array_types: expected roles that it requires or provides, found {unknown}"
+
+        def law(network: Network) -> None:
+            decoded = component.decode(network, self.design())
+            for role, type_ in declared.items():
+                there = ArrayType.of(decoded.roles[role])
+                assert type_.accepts(there), f"role '{role}': expected {type_}, found {there}"
+
+        for_all(law, network=self.networks())
+
+    def test_all_declared_measures_are_finite(self) -> None:
+        """``measure`` returns the declared measures, and no others, as finite numbers."""
+        component = self.component
+        if not isinstance(component, SupportsDesignMeasures):
+            return
+
+        def law(network: Network) -> None:
+            measured = component.measure(component.decode(network, self.design()))
+            assert set(measured) == set(component.measures), (
+                f"expected the measures {sorted(component.measures)}, found {sorted(measured)}"
+            )
+            for name, value in measured.items():
+                assert math.isfinite(value), f"measure '{name}': expected a finite number, found {value}"
 
         for_all(law, network=self.networks())
 

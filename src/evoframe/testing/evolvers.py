@@ -7,42 +7,41 @@ import functools
 import json
 import math
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-from evoframe.contract import Evolver, EvolverRun, NetworkGraph, SupportsGraph
-from evoframe.testing.components import ComponentContract
-from evoframe.testing.laws import for_all, global_random_state_untouched, refusal, same_bits
+from evoframe.contract import EvolverRun, NetworkGraph, SupportsGraph
+from evoframe.testing.evolving import Floats, dumped_all, json_text
+from evoframe.testing.laws import (
+    JUNK,
+    damaged_at,
+    for_all,
+    global_random_state_untouched,
+    places_in,
+    refusal,
+    same_bits,
+)
+from evoframe.testing.seeding import SeedingLaws
 
 __all__ = ["EvolverContract"]
 
-Floats = NDArray[np.float64]
 
-
-class EvolverContract(ComponentContract[Evolver]):
+class EvolverContract(SeedingLaws):
     """The laws of an :class:`~evoframe.Evolver` and of the run that it starts.
 
-    Graphs of genomes are tested if the evolver returns them.
+    The tests supply the measures that the evolver wants. Graphs of genomes are tested if the evolver returns
+    them; loading and seeds, if its runs offer them.
 
     Attributes:
         inputs: Number of inputs of its networks.
         outputs: Number of outputs of its networks.
         size: Size of the population.
         turns: Number of turns of the tests.
-        measures: Names of the measures that it requires in addition to fitness.
     """
-
-    protocol = Evolver
-    inputs: ClassVar[int] = 3
-    outputs: ClassVar[int] = 2
-    size: ClassVar[int] = 12
-    turns: ClassVar[int] = 6
-    measures: ClassVar[tuple[str, ...]] = ()
 
     def test_sizes_are_refused_by_a_configuration_error(self) -> None:
         """``check`` raises only ``ConfigurationError`` with a message, and accepts the tested size."""
@@ -56,6 +55,15 @@ class EvolverContract(ComponentContract[Evolver]):
     def test_it_starts_a_run(self) -> None:
         """``start`` returns an ``EvolverRun`` with every method of the protocol."""
         assert isinstance(self.start(), EvolverRun), "start() must return an EvolverRun; a method is missing"
+
+    def test_wanted_measures_are_a_tuple_of_different_names(self) -> None:
+        """``wants`` is a tuple of names, without repeats, if the evolver has it."""
+        wanted = getattr(self.component, "wants", ())
+        assert isinstance(wanted, tuple), f"wants must be a tuple, found {type(wanted).__name__}"
+        assert all(isinstance(name, str) and name.strip() for name in wanted), (
+            f"wants must be strings that are not empty, found {wanted}"
+        )
+        assert len(set(wanted)) == len(wanted), f"wants must be different names, found {wanted}"
 
     def test_the_population_keeps_its_size(self) -> None:
         """``ask`` returns as many genomes as the population has members, in every turn."""
@@ -75,7 +83,7 @@ class EvolverContract(ComponentContract[Evolver]):
         known: dict[int, str] = {}
         for run, genomes in self._play(self.start()):
             for member, genome in zip(run.members(), genomes, strict=True):
-                dumped = _text(run.dump(genome))
+                dumped = json_text(run.dump(genome))
                 assert known.setdefault(member.id, dumped) == dumped, (
                     f"the id {member.id} belongs to two different genomes"
                 )
@@ -84,10 +92,10 @@ class EvolverContract(ComponentContract[Evolver]):
         """``genomes`` returns the genomes of the last ``ask``, before and after ``tell``."""
         run = self.start()
         for _ in range(self.turns):
-            asked = _dumped(run, run.ask())
-            assert _dumped(run, run.genomes()) == asked, "genomes() must equal the last ask()"
+            asked = dumped_all(run, run.ask())
+            assert dumped_all(run, run.genomes()) == asked, "genomes() must equal the last ask()"
             self._tell(run, run.genomes())
-            assert _dumped(run, run.genomes()) == asked, (
+            assert dumped_all(run, run.genomes()) == asked, (
                 "genomes() must equal the last ask(), also after tell()"
             )
 
@@ -96,8 +104,8 @@ class EvolverContract(ComponentContract[Evolver]):
         earlier: list[Any] = []
         dumped: list[str] = []
         for run, genomes in self._play(self.start()):
-            assert _dumped(run, earlier) == dumped, "ask() must not change the genomes that it replaces"
-            earlier, dumped = list(genomes), _dumped(run, genomes)
+            assert dumped_all(run, earlier) == dumped, "ask() must not change the genomes that it replaces"
+            earlier, dumped = list(genomes), dumped_all(run, genomes)
 
     def test_members_have_the_fitness_of_tell_in_order(self) -> None:
         """Members have the fitness passed to ``tell``, in order; initial members have none before."""
@@ -144,12 +152,14 @@ class EvolverContract(ComponentContract[Evolver]):
         for turn in range(self.turns):
             self._turn(run)
             restored = self.start(seed=turn + 100)
-            restored.restore(json.loads(_text(run.state())))
+            restored.restore(json.loads(json_text(run.state())))
             assert list(restored.members()) == list(run.members()), "restore() must restore the members"
-            assert _dumped(restored, restored.genomes()) == _dumped(run, run.genomes()), (
+            assert dumped_all(restored, restored.genomes()) == dumped_all(run, run.genomes()), (
                 "restore() must restore the genomes of the last ask()"
             )
-            assert _text(restored.state()) == _text(run.state()), "state() must equal the restored state"
+            assert json_text(restored.state()) == json_text(run.state()), (
+                "state() must equal the restored state"
+            )
             assert self._history(restored, self.turns - turn - 1) == expected[turn + 1 :], (
                 f"the run restored after turn {turn} continues differently; is the random state restored?"
             )
@@ -179,7 +189,7 @@ class EvolverContract(ComponentContract[Evolver]):
         with global_random_state_untouched():
             run = self.start()
             self._history(run)
-            self.start().restore(json.loads(_text(run.state())))
+            self.start().restore(json.loads(json_text(run.state())))
 
     def test_global_random_states_do_not_matter(self) -> None:
         """A run does not depend on the global generators of Python and numpy."""
@@ -225,7 +235,7 @@ class EvolverContract(ComponentContract[Evolver]):
         for run, genomes in self._play(self.start()):
             for genome in genomes:
                 dumped = run.dump(genome)
-                assert json.loads(_text(dumped)) == dumped, (
+                assert json.loads(json_text(dumped)) == dumped, (
                     "dump() must return values that survive a round trip through JSON: lists, not tuples"
                 )
 
@@ -237,37 +247,24 @@ class EvolverContract(ComponentContract[Evolver]):
     def test_a_genome_has_one_graph(self) -> None:
         """A genome has the same graph every time, also when read from JSON text, and is not changed."""
         for dumped in self._drawable():
-            before = _text(dumped)
+            before = json_text(dumped)
             graph = self._graph(dumped)
             assert self._graph(dumped) == graph, "graph() returns different graphs for the same genome"
             assert self._graph(json.loads(before)) == graph, "graph() differs after a round trip through JSON"
-            assert _text(dumped) == before, "graph() must not change the genome"
+            assert json_text(dumped) == before, "graph() must not change the genome"
 
     def test_a_damaged_genome_is_refused_by_a_value_error(self) -> None:
         """A damaged genome gives a ``ValueError`` or a valid graph."""
-        texts = [_text(dumped) for dumped in self._drawable()][:: self.size]
+        texts = [json_text(dumped) for dumped in self._drawable()][:: self.size]
 
         def law(text: str, junk: Any, data: st.DataObject) -> None:
             genome = json.loads(text)
-            damaged = _damaged(genome, data.draw(st.sampled_from(list(_places(genome)))), junk)
+            damaged = damaged_at(data.draw(st.sampled_from(list(places_in(genome)))), genome, junk)
             with contextlib.suppress(ValueError):
                 self._assert_sound(self._graph(damaged))
 
         if texts:
-            for_all(law, text=st.sampled_from(texts), junk=_JUNK, data=st.data())
-
-    def start(self, seed: int = 0) -> EvolverRun:
-        """Start a run with a new generator."""
-        rng = np.random.default_rng(seed)
-        return self.component.start(self.inputs, self.outputs, self.size, rng)
-
-    def judge(self, run: EvolverRun, genomes: Sequence[Any]) -> tuple[Floats, Mapping[str, Floats]]:
-        """Return the fitness and measures of *genomes*, computed from the outputs of their networks."""
-        points = self._points(0, 1.0)
-        outputs = [np.arctan(run.express(genome)(points)) for genome in genomes]
-        fitness = np.array([output.mean() for output in outputs])
-        spread = np.array([output.std() for output in outputs])
-        return fitness, dict.fromkeys(self.measures, spread)
+            for_all(law, text=st.sampled_from(texts), junk=JUNK, data=st.data())
 
     def _drawable(self) -> Iterator[Any]:
         """Return dumped genomes of several generations if the evolver returns graphs, else nothing."""
@@ -307,37 +304,6 @@ class EvolverContract(ComponentContract[Evolver]):
             )
             assert math.isfinite(link.weight), f"links must have finite weights, found {link.weight}"
 
-    def _points(self, seed: int, scale: float) -> Floats:
-        return scale * np.random.default_rng(seed).uniform(-1, 1, size=(16, self.inputs))
-
-    def _play(self, run: EvolverRun) -> Iterator[tuple[EvolverRun, Sequence[Any]]]:
-        """Evolve for all turns; yield the run and its genomes between ``ask`` and ``tell``."""
-        for _ in range(self.turns):
-            genomes = run.ask()
-            yield run, genomes
-            self._tell(run, genomes)
-
-    def _turn(self, run: EvolverRun) -> str:
-        return self._tell(run, run.ask())
-
-    def _tell(self, run: EvolverRun, genomes: Sequence[Any]) -> str:
-        """Pass the fitness to ``tell``, and return the genomes, members and fitness of the turn as text."""
-        fitness, measures = self.judge(run, genomes)
-        run.tell(fitness, measures)
-        members = [str(member) for member in run.members()]
-        return _text([_dumped(run, genomes), members, fitness.tolist()])
-
-    def _history(self, run: EvolverRun, turns: int | None = None) -> list[str]:
-        return [self._turn(run) for _ in range(self.turns if turns is None else turns)]
-
-    def _read(self, run: EvolverRun, genomes: Sequence[Any]) -> None:
-        run.state()
-        run.members()
-        run.genomes()
-        for genome in genomes:
-            run.express(genome)
-            run.dump(genome)
-
     def _refuses(self, spoil: Callable[[Floats], Floats]) -> None:
         run = self.start()
         genomes = run.ask()
@@ -349,45 +315,8 @@ class EvolverContract(ComponentContract[Evolver]):
         assert history == self._history(self.start()), "a refused tell() must not change the run"
 
 
-_MISSING: Any = object()
-_JUNK: st.SearchStrategy[Any] = st.one_of(
-    st.sampled_from([None, True, -1, 0, 2, 10**400, math.nan, math.inf, "", "sin", [], {}, [[]], [{}]]),
-    st.floats(),
-    st.just(_MISSING),
-)
-
-
-def _places(value: Any) -> Iterator[tuple[Any, ...]]:
-    """Return the paths of *value* itself and of all JSON values within it."""
-    yield ()
-    if isinstance(value, dict | list):
-        for key in value if isinstance(value, dict) else range(len(value)):
-            yield from ((key, *rest) for rest in _places(value[key]))
-
-
-def _damaged(value: Any, place: tuple[Any, ...], junk: Any) -> Any:
-    """Return *value* with *junk* at *place*, or without that place if *junk* is :data:`_MISSING`."""
-    if not place:
-        return None if junk is _MISSING else junk
-    parent = functools.reduce(lambda within, key: within[key], place[:-1], value)
-    if junk is _MISSING:
-        del parent[place[-1]]
-    else:
-        parent[place[-1]] = junk
-    return value
-
-
 def _with_last(value: float, fitness: Floats) -> Floats:
     return np.append(fitness[:-1], value)
-
-
-def _dumped(run: EvolverRun, genomes: Sequence[Any]) -> list[str]:
-    return [_text(run.dump(genome)) for genome in genomes]
-
-
-def _text(value: Any) -> str:
-    """Return *value* as JSON text, which preserves the order of dictionaries."""
-    return json.dumps(value, allow_nan=False)
 
 
 @contextlib.contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import math
 import random
 import re
 import sys
@@ -10,18 +12,21 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, settings, strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from evoframe.contract import GeometryPart, Network, Outcome
 from evoframe.errors import ConfigurationError
 
 __all__ = [
+    "JUNK",
     "accepted",
     "assert_is_mesh",
     "at_most",
+    "damaged_at",
     "for_all",
     "global_random_state_untouched",
+    "places_in",
     "random_network",
     "refusal",
     "same_arrays",
@@ -31,16 +36,45 @@ __all__ = [
 
 TOLERANCE = 1e-12
 
+_MISSING: Any = object()
+JUNK: SearchStrategy[Any] = st.one_of(
+    st.sampled_from([None, True, -1, 0, 2, 10**400, math.nan, math.inf, "", "sin", [], {}, [[]], [{}]]),
+    st.floats(),
+    st.just(_MISSING),
+)
+"""Values that a damaged document may contain; one of them removes the place instead."""
 
-def for_all(law: Callable[..., None], /, **strategies: SearchStrategy[Any]) -> None:
-    """Test *law* with examples of its arguments.
+
+def for_all(law: Callable[..., None], limit: int | None = None, /, **strategies: SearchStrategy[Any]) -> None:
+    """Test *law* with examples of its arguments, by default as many as the profile of hypothesis states.
 
     The law is a function inside a test, not a decorated method, because a method decorated by hypothesis
     belongs to one class, while these tests are inherited by many. It can also use attributes of the subclass.
     There is no time limit, since neither a slow component nor a slow computer breaks a law.
     """
     untimed = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-    untimed(given(**strategies)(law))()
+    limited = settings(untimed, max_examples=limit) if limit else untimed
+    limited(given(**strategies)(law))()
+
+
+def places_in(value: Any) -> Iterator[tuple[Any, ...]]:
+    """Yield the paths of *value* itself and of all JSON values within it."""
+    yield ()
+    if isinstance(value, dict | list):
+        for key in value if isinstance(value, dict) else range(len(value)):
+            yield from ((key, *rest) for rest in places_in(value[key]))
+
+
+def damaged_at(place: tuple[Any, ...], value: Any, junk: Any) -> Any:
+    """Return *value*, which is changed, with an example of :data:`JUNK` at a *place*."""
+    if not place:
+        return None if junk is _MISSING else junk
+    parent = functools.reduce(lambda within, key: within[key], place[:-1], value)
+    if junk is _MISSING:
+        del parent[place[-1]]
+    else:
+        parent[place[-1]] = junk
+    return value
 
 
 def at_most(smaller: float, larger: float) -> bool:

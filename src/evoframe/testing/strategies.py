@@ -2,32 +2,45 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import attrs
 import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from evoframe.contract import CollaborationStrategy, Member
-from evoframe.testing.components import ComponentContract
+from evoframe.contract import Judged, Member, SupportsEach, SupportsMemory, SupportsSizes
 from evoframe.testing.laws import accepted, for_all, global_random_state_untouched, refusal
+from evoframe.testing.strategy_runs import StrategyRunLaws
 
 __all__ = ["CollaborationStrategyContract"]
 
 _SEEDS = st.integers(0, 2**32 - 1)
+_SOMEBODY = Judged(Member(id=0, fitness=None), index=0)
+_JUDGED = st.lists(
+    st.builds(
+        Judged,
+        st.builds(Member, id=st.integers(0, 16), fitness=st.none() | st.floats(-1.0, 1.0)),
+        collaborators=st.lists(st.integers(0, 16), max_size=3, unique=True).map(tuple),
+        index=st.integers(0, 16),
+    ),
+    max_size=6,
+    unique_by=lambda judged: judged.index,
+)
 
 
-class CollaborationStrategyContract(ComponentContract[CollaborationStrategy]):
-    """The laws of a :class:`~evoframe.CollaborationStrategy`.
+class CollaborationStrategyContract(StrategyRunLaws):
+    """The laws of a :class:`~evoframe.CollaborationStrategy` and of its :class:`~evoframe.CollaborationRun`.
+
+    Choices for each individual, a memory, and several numbers of collaborators are tested if the strategy
+    offers them. The method ``select`` of a strategy with a memory or with choices for each individual is not
+    called; its first choice for an individual is tested instead.
 
     Attributes:
         population_sizes: Sizes of populations to test; no members are selected from those that ``size``
             refuses.
+        turns: Number of turns of the choosing population in a simulated run.
     """
-
-    protocol = CollaborationStrategy
-    population_sizes: ClassVar[range] = range(1, 17)
 
     def test_populations_are_refused_by_a_configuration_error_that_names_their_size(self) -> None:
         """``size`` raises only ``ConfigurationError``, and accepts some population sizes."""
@@ -93,12 +106,15 @@ class CollaborationStrategyContract(ComponentContract[CollaborationStrategy]):
         for_all(law, members=self.populations(), seed=_SEEDS)
 
     def test_ties_are_broken_by_index(self) -> None:
-        """Of members that differ only in their ids, the first is chosen first, unless choices are random."""
+        """Of members that differ only in their ids, the first is chosen first.
+
+        Exceptions are random choices, and choices for each individual, for which only ids must be irrelevant.
+        """
 
         def law(members: list[Member], seed: int) -> None:
             rng = np.random.default_rng(seed)
-            chosen = self.component.select(members, rng).tolist()
-            if not _was_used(rng, seed):
+            chosen = self._select_with(members, rng).tolist()
+            if not isinstance(self.component, SupportsEach) and not _was_used(rng, seed):
                 for index in chosen:
                     twins = [i for i in range(index) if _are_equal(members[i], members[index])]
                     before = chosen[: chosen.index(index)]
@@ -122,13 +138,66 @@ class CollaborationStrategyContract(ComponentContract[CollaborationStrategy]):
 
         for_all(law, members=self.populations(), seed=_SEEDS)
 
+    def test_all_possible_numbers_are_declared(self) -> None:
+        """``sizes`` returns positive numbers, also that of ``size``, and refuses the same populations."""
+        if isinstance(self.component, SupportsSizes):
+            for n_members in self.population_sizes:
+                refused = refusal(self.component.sizes, n_members)
+                assert (refused is None) == (refusal(self.component.size, n_members) is None), (
+                    f"size({n_members}) and sizes({n_members}) must both be accepted or both be refused"
+                )
+                assert refused is None or str(n_members) in refused, (
+                    f"the message with which sizes() refuses {n_members} members must contain that number"
+                )
+            for n_members in accepted(self.component.sizes, self.population_sizes):
+                declared, first = list(self.component.sizes(n_members)), self.component.size(n_members)
+                assert first in declared, f"sizes({n_members}) must contain size({n_members}) = {first}"
+                assert min(declared) >= 1, f"expected numbers >= 1, found sizes({n_members}) = {declared}"
+
+    def test_there_is_a_row_for_each_individual(self) -> None:
+        """``select_each`` returns an array ``intp[len(judged), size(len(members))]``, even for nobody."""
+
+        def law(members: list[Member], judged: list[Judged], seed: int) -> None:
+            rows = self._select_each(judged, members, seed)
+            assert rows.dtype == np.intp, f"select_each() must return an intp array, found {rows.dtype}"
+            declared = (len(judged), self.component.size(len(members)))
+            assert rows.shape == declared, f"select_each() must return shape {declared}, found {rows.shape}"
+
+        if isinstance(self.component, SupportsEach):
+            for_all(law, members=self.populations(), judged=_JUDGED, seed=_SEEDS)
+
+    def test_ids_are_irrelevant_to_choices_for_each_individual(self) -> None:
+        """``select_each`` returns the same rows if all ids are replaced: they break no ties."""
+
+        def law(members: list[Member], judged: list[Judged], seed: int) -> None:
+            renamed = [attrs.evolve(member, id=_other_id(member.id)) for member in members]
+            rows = self._select_each(judged, members, seed).tolist()
+            again = self._select_each([*map(_renamed, judged)], renamed, seed).tolist()
+            assert rows == again, "other ids give other choices; break ties by index"
+
+        if isinstance(self.component, SupportsEach):
+            for_all(law, members=self.populations(), judged=_JUDGED, seed=_SEEDS)
+
     def populations(self) -> st.SearchStrategy[list[Member]]:
         """Return evaluated populations of accepted sizes, with many ties and some diverged members."""
-        sizes = st.sampled_from(accepted(self.component.size, self.population_sizes))
-        return sizes.flatmap(_members)
+        return self._accepted_sizes().flatmap(_members)
 
     def _select(self, members: Any, seed: int) -> NDArray[np.intp]:
-        return self.component.select(members, np.random.default_rng(seed))
+        return self._select_with(members, np.random.default_rng(seed))
+
+    def _select_with(self, members: Any, rng: np.random.Generator) -> NDArray[np.intp]:
+        """Return the choice for an individual, by the method that is called in a run."""
+        if isinstance(self.component, SupportsMemory):
+            [row] = self.start().choose([_SOMEBODY], members, rng)
+            return np.array(row)
+        if isinstance(self.component, SupportsEach):
+            [chosen] = self.component.select_each([_SOMEBODY], members, rng)
+            return np.asarray(chosen)
+        return self.component.select(members, rng)
+
+    def _select_each(self, judged: list[Judged], members: list[Member], seed: int) -> NDArray[np.intp]:
+        assert isinstance(self.component, SupportsEach)
+        return self.component.select_each(judged, members, np.random.default_rng(seed))
 
 
 def _members(n: int) -> st.SearchStrategy[list[Member]]:
@@ -156,3 +225,12 @@ def _are_equal(one: Member, other: Member) -> bool:
 
 def _was_used(rng: np.random.Generator, seed: int) -> bool:
     return bool(rng.bit_generator.state != np.random.default_rng(seed).bit_generator.state)
+
+
+def _renamed(judged: Judged) -> Judged:
+    member = attrs.evolve(judged.member, id=_other_id(judged.member.id))
+    return attrs.evolve(judged, member=member, collaborators=tuple(map(_other_id, judged.collaborators)))
+
+
+def _other_id(id_: int) -> int:
+    return 1000 - id_  # reverses their order

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import toy_box
 import toys
 
-from evoframe import Plugins, Run, run
+from evoframe import Plugins, Run, RunConfig, run
 from evoframe.analysis.page.html import Source, Table
 from evoframe.analysis.report.run_report import draft_of_run
 
@@ -54,3 +55,19 @@ def test_the_page_starts_with_the_champion_and_ends_with_the_configuration(
     assert isinstance(source, Source)
     assert source.text == (made.directory / "config.toml").read_text()
     assert isinstance(versions, Table)
+
+
+@pytest.mark.parametrize(
+    "name", ["one", "three archive", "parallel", "weighted", "measures", "roles in turns"]
+)
+def test_runs_with_any_timing_and_number_of_populations_have_a_report(
+    toy_variant: Callable[..., RunConfig], plugins: Plugins, tmp_path: Path, name: str
+) -> None:
+    config = toy_variant(name)
+    finished = run(config, out=tmp_path / "r", plugins=plugins)
+    draft = draft_of_run(finished, plugins)
+    rows = csv.DictReader(draft.files["summary.csv"].decode().splitlines())
+    figures = {row["figure"]: float(row["value"]) for row in rows}
+    assert figures["best pair"] == finished.champion().score
+    assert {f"{name}: best fitness" for name in config.populations} <= figures.keys()
+    assert f"{finished.last_turn():,} turns" in draft.lead

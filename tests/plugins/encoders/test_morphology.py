@@ -178,3 +178,19 @@ def test_other_roles_of_a_design_are_kept() -> None:
 def test_a_bad_option_is_named(options: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         CppnMorphology(**options)
+
+
+@given(seed=SEEDS, enclosure=st.booleans())
+def test_measures_count_voxels_that_the_network_determines(seed: int, enclosure: bool) -> None:
+    encoder = CppnMorphology(canvas=(5, 4, 4), enclosure=enclosure)
+    decoded = encoder.decode(network_of(3, 2, seed, 1.0), Design())
+    body = decoded.roles["morphology"]
+    drawn = body[1:-1, 1:-1, 1:-1] if enclosure else body
+    measured = encoder.measure(decoded)
+    assert measured["count-contractile"] == np.count_nonzero(body == 3)
+    assert measured["filled-share"] == np.count_nonzero(drawn) / drawn.size
+
+
+def test_a_canvas_without_an_interior_is_not_filled() -> None:
+    encoder = CppnMorphology(canvas=(2, 2, 2))
+    assert encoder.measure(Design({"morphology": np.ones((2, 2, 2), np.uint8)}))["filled-share"] == 0.0

@@ -409,3 +409,65 @@ def test_the_state_of_another_population_is_refused(other: tuple[int, int, int])
     state = start().state()
     with pytest.raises(ValueError, match=r"."):
         Neat().start(*other, np.random.default_rng(0)).restore(state)
+
+
+def seeded(runs: int, seed: int = 0) -> Any:
+    """Return a run that starts from the last genomes of others."""
+    run, genomes = start(seed), []
+    for other in range(1, runs + 1):
+        evolved = start(other, node_add=0.9, connection_add=0.9)
+        for _ in range(5):
+            dumped = turn(evolved)
+        genomes += [run.load(genome) for genome in dumped[:4]]
+    run.seed(genomes)
+    return run, genomes
+
+
+@pytest.mark.filterwarnings("error")  # neat-python warns of numbers that stand for two connections
+@pytest.mark.parametrize("runs", [1, 3])
+def test_a_run_that_starts_from_genomes_of_others_evolves_without_collisions(runs: int) -> None:
+    run, _ = seeded(runs)
+    for _ in range(30):
+        numbers: dict[int, tuple[int, int]] = {}
+        for genome in turn(run):
+            for link in genome["connections"]:
+                ends = link["from"], link["to"]
+                assert numbers.setdefault(link["innovation"], ends) == ends
+
+
+def test_seeds_and_their_mutants_are_put_into_species() -> None:
+    run, genomes = seeded(3)
+    run.ask()
+    members = run.members()
+    species = {member.species for member in members}
+    assert species == set(range(1, len(species) + 1))
+    assert [member.genome_size for member in members[: len(genomes)]] == [sum(g.size()) for g in genomes]
+
+
+def test_mutants_resemble_their_seeds() -> None:
+    run = start()
+    big = start(1, node_add=1.0, node_delete=0.0, connection_delete=0.0)
+    for _ in range(8):
+        genomes = turn(big)
+    large = max(genomes, key=lambda genome: len(genome["nodes"]))
+    run.seed([run.load(large)])
+    _, *mutants = map(run.dump, run.ask())
+    n_nodes = len(large["nodes"])
+    assert n_nodes > 5
+    assert all(abs(len(mutant["nodes"]) - n_nodes) <= 1 for mutant in mutants)
+    assert any(mutant["nodes"] != large["nodes"] for mutant in mutants)
+
+
+def test_a_genome_of_other_networks_is_not_loaded() -> None:
+    other = Neat().start(4, 1, 5, np.random.default_rng(0))
+    [genome, *_] = map(other.dump, other.ask())
+    with pytest.raises(ValueError, match="does not exist: -4"):
+        start().load(genome)
+
+
+def test_a_run_without_seeds_is_that_of_a_run_that_loads_genomes() -> None:
+    plain, loading = start(), start()
+    for _ in range(5):
+        for genome in turn(start(7)):
+            loading.load(genome)
+        assert turn(loading) == turn(plain)

@@ -82,3 +82,24 @@ def test_the_state_of_another_evolver_is_refused() -> None:
     state = Neat().start(3, 2, 25, np.random.default_rng(0)).state()
     with pytest.raises(ValueError, match=r'state\.evolver: .*"random", found "neat"'):
         start().restore(state)
+
+
+def test_only_the_first_turn_has_the_seeds() -> None:
+    run, other = start(size=6), start(size=6)
+    [seed, *_] = turn(start(5, node_add=1.0, node_delete=0.0, mutations=20))
+    run.seed([run.load(seed)])
+    first = turn(run)
+    assert first[0] == {**seed, "id": 1}
+    assert [genome["id"] for genome in first] == [1, 2, 3, 4, 5, 6]
+    turn(other)
+    assert [len(genome["nodes"]) for genome in turn(run)] == [len(genome["nodes"]) for genome in turn(other)]
+
+
+@pytest.mark.parametrize("mutations", [0, 6])
+def test_mutants_of_seeds_are_mutated_at_least_once(mutations: int) -> None:
+    run = start(size=300, mutations=mutations, node_add=1.0, node_delete=0.0)
+    [seed, *_] = turn(start(1))
+    run.seed([run.load(seed)])
+    grown = [len(genome["nodes"]) - len(seed["nodes"]) for genome in turn(run)[1:]]
+    assert set(grown) <= set(range(1, max(1, mutations) + 1))
+    assert len(set(grown)) == max(1, mutations)

@@ -19,11 +19,11 @@ from evoframe import (
     SupportsVariants,
     SupportsWholeDesigns,
 )
-from evoframe_simulators import Vox, evoframe_simulators
+from evoframe_simulators import Functions, Vox, evoframe_simulators
 
 
-def test_vox_is_offered_by_name() -> None:
-    assert evoframe_simulators() == {"vox": Vox}
+def test_they_are_offered_by_name() -> None:
+    assert evoframe_simulators() == {"functions": Functions, "vox": Vox}
 
 
 @pytest.mark.parametrize(

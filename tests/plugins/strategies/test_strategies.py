@@ -1,15 +1,41 @@
-import math
-import re
-from typing import Any
+"""Contract tests of all strategies, with their defaults and with other options."""
 
-import numpy as np
+from typing import Any, get_args, get_type_hints
+
+import attrs
 import pytest
+from collaborators import parts
 
-from evoframe import ConfigurationError, Member
+from evoframe import ConfigurationError, Source, load_config
 from evoframe.testing import CollaborationStrategyContract
-from evoframe_strategies import BestAndWorst, Fittest, Random, Worst, evoframe_strategies
+from evoframe_strategies import (
+    All,
+    BestAndRandom,
+    BestAndWorst,
+    Fittest,
+    HallOfFame,
+    Informative,
+    Neighbourhood,
+    Previous,
+    Random,
+    Rank,
+    Roulette,
+    Scheduled,
+    Shuffled,
+    SpeciesChampions,
+    Sum,
+    Tournament,
+    Worst,
+    evoframe_strategies,
+)
+from evoframe_strategies.nesting import built_in
 
-STRATEGIES = [Fittest(), Worst(), BestAndWorst(), Random()]
+STRATEGIES = evoframe_strategies()
+
+
+def scheduled(component: Any, n: tuple[int, ...], since: tuple[int, ...]) -> Scheduled:
+    [strategy] = parts(component)
+    return Scheduled(strategy, n=n, since=since)
 
 
 class TestFittest(CollaborationStrategyContract):
@@ -32,6 +58,18 @@ class TestFiveBestAndFiveWorst(CollaborationStrategyContract):
     component = BestAndWorst(n=5)
 
 
+class TestAll(CollaborationStrategyContract):
+    component = All()
+
+
+class TestSpeciesChampions(CollaborationStrategyContract):
+    component = SpeciesChampions()
+
+
+class TestMoreThanThereAreSpecies(CollaborationStrategyContract):
+    component = SpeciesChampions(n=6)
+
+
 class TestRandom(CollaborationStrategyContract):
     component = Random()
 
@@ -40,115 +78,186 @@ class TestFiveAtRandom(CollaborationStrategyContract):
     component = Random(n=5)
 
 
-def population(*fitness: float | None, diverged: tuple[int, ...] = ()) -> list[Member]:
-    return [Member(id=100 - i, fitness=f, diverged=i in diverged) for i, f in enumerate(fitness)]
+class TestBestAndRandom(CollaborationStrategyContract):
+    component = BestAndRandom()
 
 
-def chosen(strategy: Any, members: list[Member], seed: int = 0) -> list[int]:
-    indices: list[int] = strategy.select(members, np.random.default_rng(seed)).tolist()
-    return indices
+class TestBestAndFourAtRandom(CollaborationStrategyContract):
+    component = BestAndRandom(n=5)
+
+
+class TestTournament(CollaborationStrategyContract):
+    component = Tournament()
+
+
+class TestTournamentOfEverybody(CollaborationStrategyContract):
+    component = Tournament(n=4, tournament_size=16)
+
+
+class TestRoulette(CollaborationStrategyContract):
+    component = Roulette()
+
+
+class TestRouletteOfFive(CollaborationStrategyContract):
+    component = Roulette(n=5)
+
+
+class TestRank(CollaborationStrategyContract):
+    component = Rank()
+
+
+class TestRankWithFullPressure(CollaborationStrategyContract):
+    component = Rank(n=5, pressure=2.0)
+
+
+class TestShuffled(CollaborationStrategyContract):
+    component = Shuffled()
+
+
+class TestShuffledFive(CollaborationStrategyContract):
+    component = Shuffled(n=5)
+
+
+class TestNeighbourhood(CollaborationStrategyContract):
+    component = Neighbourhood()
+
+
+class TestFiveOnATorus(CollaborationStrategyContract):
+    component = Neighbourhood(n=5, shape="torus")
+
+
+class TestPrevious(CollaborationStrategyContract):
+    component = Previous()
+
+
+class TestFivePrevious(CollaborationStrategyContract):
+    component = Previous(n=5)
+
+
+class TestHallOfFame(CollaborationStrategyContract):
+    component = HallOfFame()
+
+
+class TestASmallHallOfFame(CollaborationStrategyContract):
+    component = HallOfFame(n=5, capacity=3)
+
+
+class TestInformative(CollaborationStrategyContract):
+    component = Informative()
+
+
+class TestFiveInformative(CollaborationStrategyContract):
+    component = Informative(n=5)
+
+
+class TestScheduled(CollaborationStrategyContract):
+    component = Scheduled()
+
+
+class TestAScheduleWithAMemory(CollaborationStrategyContract):
+    component = scheduled(HallOfFame(), n=(4, 1, 3), since=(0, 1, 4))
+
+
+class TestAScheduleForEachIndividual(CollaborationStrategyContract):
+    component = scheduled(Shuffled(), n=(1, 3), since=(0, 2))
+
+
+class TestSum(CollaborationStrategyContract):
+    component = Sum()
+
+
+class TestASumOfArchives(CollaborationStrategyContract):
+    component = Sum(parts(HallOfFame(n=2), Previous(n=2), Informative(n=3), HallOfFame(n=1)))
+
+
+class TestASumForEachIndividual(CollaborationStrategyContract):
+    component = Sum(parts(Neighbourhood(n=2), Shuffled(n=2), Random(n=1)))
+
+
+class TestASumOfEverybody(CollaborationStrategyContract):
+    component = Sum(parts(HallOfFame(n=1), All()))
+
+
+class TestASumOfCombinations(CollaborationStrategyContract):
+    component = Sum(parts(scheduled(Previous(), n=(1, 2), since=(0, 3)), Sum()))
+
+
+def contracts() -> list[type[CollaborationStrategyContract]]:
+    return [
+        value
+        for value in globals().values()
+        if isinstance(value, type) and issubclass(value, CollaborationStrategyContract)
+    ]
+
+
+@pytest.mark.parametrize("class_", STRATEGIES.values(), ids=list(STRATEGIES))
+def test_every_strategy_has_a_contract_test(class_: type[Any]) -> None:
+    tested = [contract.component for contract in contracts() if "component" in vars(contract)]
+    assert any(type(component) is class_ for component in tested)
 
 
 def test_the_names_are_those_of_the_configuration() -> None:
-    assert dict(evoframe_strategies()) == {
-        "fittest": Fittest,
-        "worst": Worst,
+    assert dict(STRATEGIES) == {
+        "all": All,
+        "best-and-random": BestAndRandom,
         "best-and-worst": BestAndWorst,
+        "fittest": Fittest,
+        "hall-of-fame": HallOfFame,
+        "informative": Informative,
+        "neighbourhood": Neighbourhood,
+        "previous": Previous,
         "random": Random,
+        "rank": Rank,
+        "roulette": Roulette,
+        "scheduled": Scheduled,
+        "shuffled": Shuffled,
+        "species-champions": SpeciesChampions,
+        "sum": Sum,
+        "tournament": Tournament,
+        "worst": Worst,
     }
 
 
-@pytest.mark.parametrize(
-    ("strategy", "expected"),
-    [
-        (Fittest(n=3), [4, 0, 2]),
-        (Worst(n=3), [3, 1, 0]),
-        (BestAndWorst(n=2), [4, 0, 3, 1]),
-        (BestAndWorst(n=3), [4, 0, 2, 3, 1, 5]),
-    ],
-)
-def test_members_are_chosen_by_fitness_and_ties_by_index(strategy: Any, expected: list[int]) -> None:
-    assert chosen(strategy, population(0.5, -0.1, 0.5, -0.2, 0.9, 0.5)) == expected
+@pytest.mark.parametrize("name", STRATEGIES)
+def test_every_strategy_is_configured_by_its_name(name: str) -> None:
+    config = load_config("paper", overrides=[f"collaboration={name}", "aggregator=am"])
+    assert config.collaboration.component == STRATEGIES[name]()
+    assert {chosen.source.entry_point for _, chosen in config.collaboration.nested("collaboration")} == {
+        "strategies"
+    }
 
 
-@pytest.mark.parametrize(
-    ("strategy", "expected"),
-    [
-        (Fittest(n=2), [1, 3]),
-        (Fittest(n=3), [1, 3, 0]),
-        (Fittest(n=4), [1, 3, 0, 2]),
-        (Worst(n=2), [3, 1]),
-        (Worst(n=3), [3, 1, 2]),
-        (BestAndWorst(n=1), [1, 3]),
-        (BestAndWorst(n=2), [1, 3, 2, 0]),
-    ],
-)
-def test_diverged_members_are_a_last_resort(strategy: Any, expected: list[int]) -> None:
-    assert chosen(strategy, population(0.9, 0.6, -0.9, 0.5, diverged=(0, 2))) == expected
+WITH_N = [class_ for class_ in STRATEGIES.values() if get_type_hints(class_).get("n") is int]
 
 
-def test_random_draws_everyone_equally_often() -> None:
-    members = population(*range(10))
-    counts = np.zeros(10)
-    rng = np.random.default_rng(1)
-    for _ in range(2000):
-        counts[Random(n=3).select(members, rng)] += 1
-    # 600 expected each; the bound is five standard deviations of a binomial of 2000 draws with p = 0.3.
-    assert (abs(counts - 600) < 5 * math.sqrt(2000 * 0.3 * 0.7)).all()
+@pytest.mark.parametrize("class_", [class_ for class_ in WITH_N if class_ is not BestAndWorst])
+def test_any_n_that_the_population_allows_is_possible(class_: type[Any]) -> None:
+    assert [class_(n=n).size(25) for n in range(1, 26)] == list(range(1, 26))
+    with pytest.raises(ConfigurationError, match=r"26 collaborators .* 25 members"):
+        class_(n=26).size(25)
 
 
-def test_random_keeps_the_order_in_which_it_draws() -> None:
-    assert any(chosen(Random(n=3), population(*range(10)), seed) != sorted(range(3)) for seed in range(5))
-    orders = [chosen(Random(n=5), population(*range(10)), seed) for seed in range(20)]
-    assert any(order != sorted(order) for order in orders)
-
-
-def test_random_draws_diverged_members_after_the_clean_ones() -> None:
-    members = population(*range(6), diverged=(0, 2, 3, 5))
-    for seed in range(20):
-        drawn = chosen(Random(n=4), members, seed)
-        assert set(drawn[:2]) == {1, 4}
-        assert set(drawn[2:]) < {0, 2, 3, 5}
-
-
-def test_random_needs_no_fitness() -> None:
-    assert len(chosen(Random(), population(None, None, None))) == 2
-
-
-@pytest.mark.parametrize("strategy", [Fittest(), Worst(), BestAndWorst(n=1)])
-def test_a_ranking_needs_fitness(strategy: Any) -> None:
-    with pytest.raises(ValueError, match=r"member 99: .*no fitness"):
-        chosen(strategy, population(0.5, None, 0.4))
-    with pytest.raises(ValueError, match=r"member 98: .*NaN"):
-        chosen(strategy, population(0.5, 0.4, math.nan))
-
-
-@pytest.mark.parametrize("class_", [Fittest, Worst, Random])
-def test_a_population_too_small_is_refused_with_both_numbers(class_: type[Any]) -> None:
-    assert class_(n=25).size(25) == 25
-    with pytest.raises(ConfigurationError) as refused:
-        class_(n=30).size(25)
-    assert re.findall(r"\d+ \w+", refused.value.problem)[:2] == ["30 collaborators", "25 members"]
-    assert "collaboration.n to 25 " in refused.value.problem
-
-
-def test_best_and_worst_takes_twice_n() -> None:
-    assert BestAndWorst(n=12).size(25) == 24
-    with pytest.raises(ConfigurationError) as refused:
-        BestAndWorst(n=13).size(25)
-    assert "2 x 13 collaborators" in refused.value.problem
-    assert "25 members" in refused.value.problem
-    assert "collaboration.n to 12 " in refused.value.problem
-
-
-@pytest.mark.parametrize("strategy", STRATEGIES)
-def test_an_empty_population_is_refused_without_a_suggestion(strategy: Any) -> None:
-    with pytest.raises(ConfigurationError, match=r"0 members$"):
-        chosen(strategy, [])
-
-
-@pytest.mark.parametrize("class_", [Fittest, Worst, BestAndWorst, Random])
+@pytest.mark.parametrize("class_", WITH_N)
 @pytest.mark.parametrize("n", [0, -1])
 def test_n_is_at_least_one(class_: type[Any], n: int) -> None:
     with pytest.raises(ValueError, match=f"'n' must be >= 1: {n}"):
         class_(n=n)
+
+
+@pytest.mark.parametrize("class_", STRATEGIES.values(), ids=list(STRATEGIES))
+def test_an_empty_population_is_refused(class_: type[Any]) -> None:
+    with pytest.raises(ConfigurationError, match=r"\b0 "):
+        class_().size(0)
+
+
+@pytest.mark.parametrize("class_", STRATEGIES.values(), ids=list(STRATEGIES))
+def test_every_option_is_explained(class_: type[Any]) -> None:
+    assert all(f"{field.name}: " in str(class_.__doc__) for field in attrs.fields(class_))
+
+
+def test_defaults_of_nested_strategies_are_those_that_a_configuration_chooses() -> None:
+    written = ['collaboration={name="sum", parts=["random"]}', "aggregator=am"]
+    [part] = load_config("paper", overrides=written).collaboration.component.parts  # type: ignore[attr-defined]
+    assert part == built_in("random", Random())
+    assert isinstance(part.source, Source)
+    assert get_args(get_type_hints(Sum)["parts"])

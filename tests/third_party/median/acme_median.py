@@ -22,4 +22,4 @@ class Median:
 
 @hookimpl
 def evoframe_aggregators():
-    return {"median": Median}
+    return {"middle": Median}

@@ -3,10 +3,9 @@
 From the bottom up: :mod:`.documents` reads and writes genomes as JSON values and expresses them as networks,
 :mod:`.graphs` converts them to graphs for figures, :mod:`.options` defines the options that evolvers share,
 :mod:`.randomness` gives each population its own random stream, :mod:`.genomes` is the pool that creates
-genomes, :mod:`.cohort` the current generation, and :mod:`.network_run` the base class of evolutions.
+genomes, and :mod:`.network_run` the base class of evolutions.
 """
 
-from evoframe_evolvers.cppn.cohort import Cohort, SavedCohort
 from evoframe_evolvers.cppn.genomes import NO_SELECTION, Counter, GenePool, SavedPool, Sections
 from evoframe_evolvers.cppn.network_run import NetworkRun
 from evoframe_evolvers.cppn.options import (
@@ -22,13 +21,11 @@ from evoframe_evolvers.cppn.options import (
 __all__ = [
     "NO_SELECTION",
     "BiasOptions",
-    "Cohort",
     "Counter",
     "GeneOptions",
     "GenePool",
     "GenomeOptions",
     "NetworkRun",
-    "SavedCohort",
     "SavedPool",
     "Sections",
     "WeightOptions",

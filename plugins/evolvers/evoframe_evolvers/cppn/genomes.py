@@ -14,7 +14,8 @@ import numpy as np
 from attrs.validators import ge
 from neat.innovation import InnovationTracker
 
-from evoframe_evolvers.cppn.documents import express, load_genome
+from evoframe import ConfigurationError
+from evoframe_evolvers.cppn.documents import dump_genome, express, load_genome
 from evoframe_evolvers.cppn.options import GeneOptions, GenomeOptions
 from evoframe_evolvers.cppn.randomness import PrivateStream
 from evoframe_libcppn import CppnNetwork
@@ -89,6 +90,11 @@ class GenePool:
         outputs: int,
         rng: np.random.Generator,
     ) -> None:
+        if inputs < 1:
+            raise ConfigurationError(
+                f"expected networks with at least 1 input, found {inputs}; use the evolver genetic for "
+                "encoders without inputs"
+            )
         self.inputs = inputs
         self.outputs = outputs
         self.config = _neat_config(neat_sections(options, selection, inputs, outputs))
@@ -119,6 +125,30 @@ class GenePool:
         genome = load_genome(saved, path)
         self.express(genome)
         return genome
+
+    def adopt(self, genomes: Collection[Any]) -> list[Any]:
+        """Return copies of *genomes*, possibly from other runs, from which this population starts.
+
+        They get the ids from 1 on. Later nodes and connections get numbers that none of them has. In
+        different runs, a number can stand for different connections; all but the first are renumbered.
+        """
+        self.genome_ids.value = 1
+        copies = [self._copied(genome) for genome in genomes]
+        nodes = [key for genome in copies for key in genome.nodes]
+        self.node_ids.value = max([self.outputs - 1, *nodes]) + 1
+        self.tracker.reset_generation()
+        self.tracker.global_counter = _separated(copies)
+        return copies
+
+    def mutant(self, genome: Any, times: int) -> Any:
+        """Return a mutated copy of *genome*; call it within ``stream.swapped_in()``."""
+        copied = self._copied(genome)
+        for _ in range(times):
+            copied.mutate(self.config.genome_config)
+        return copied
+
+    def _copied(self, genome: Any) -> Any:
+        return load_genome({**dump_genome(genome), "id": next(self.genome_ids)})
 
     def state(self) -> dict[str, Any]:
         """Return everything except the genomes as JSON values."""
@@ -158,6 +188,20 @@ class GenePool:
         self.tracker.generation_innovations = {
             (start, end, change): number for start, end, change, number in saved.innovations
         }
+
+
+def _separated(genomes: Collection[Any]) -> int:
+    """Give different connections different innovation numbers; return the largest one."""
+    genes = [gene for genome in genomes for gene in genome.connections.values()]
+    owners: dict[int, tuple[int, int]] = {}
+    renumbered: dict[tuple[int, tuple[int, int]], int] = {}
+    largest = max((gene.innovation for gene in genes), default=0)
+    for gene in genes:
+        if owners.setdefault(gene.innovation, gene.key) != gene.key:
+            taken = gene.innovation, gene.key
+            largest += taken not in renumbered
+            gene.innovation = renumbered.setdefault(taken, largest)
+    return largest
 
 
 def _check_unused(key: str, value: int, used: Collection[int]) -> None:

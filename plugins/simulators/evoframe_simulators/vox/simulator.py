@@ -65,6 +65,7 @@ class Vox(VoxSettings):
     tracks: ClassVar[tuple[libvox.Track, ...]] = POINTS
     formats: ClassVar[tuple[str, ...]] = ("vxa", "npz")
     dialects: ClassVar[tuple[str, ...]] = DIALECTS
+    batch_size: ClassVar[int] = 12  # designs often share their body, which is prepared once
 
     # Raise this number by hand with every change of a bit of a result, in libvox or in this package, and name
     # the change in CHANGELOG.md under "Changed bits". Runs without a number have generation 1.

@@ -80,7 +80,7 @@ def lines_of_run(run: Run, unit: str = "") -> list[Line]:
         for dash, what in enumerate(("best", "mean")):
             values = np.array([row[what] for row in rows]) * factor
             drawn.append(Line(f"{population}: {what} fitness", values, number, dash))
-    score = np.array(score_curve(run, len(populations))) * factor
+    score = np.array(score_curve(run)) * factor
     return [
         *drawn,
         Line(CURVE_NAMES["score"], score, _BLACK, _DOTTED),

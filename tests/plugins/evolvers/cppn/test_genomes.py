@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from evoframe import StructureError, structure
+from evoframe import ConfigurationError, StructureError, structure
 from evoframe_evolvers import RandomSearch
 from evoframe_evolvers.cppn import NO_SELECTION, Counter, GenePool, SavedPool
 from evoframe_evolvers.cppn.documents import dump_genome
@@ -121,3 +121,82 @@ def test_a_damaged_state_is_refused_and_changes_nothing(change: dict[str, Any], 
 
 def test_the_document_has_the_keys_of_a_state() -> None:
     assert {*saved(pool_of())} == {field.name for field in attrs.fields(SavedPool)}
+
+
+def innovations(genomes: list[Any]) -> dict[int, set[tuple[int, int]]]:
+    """Return innovation number -> the connections that have it."""
+    found: dict[int, set[tuple[int, int]]] = {}
+    for genome in genomes:
+        for gene in genome.connections.values():
+            found.setdefault(gene.innovation, set()).add(gene.key)
+    return found
+
+
+def without_id(genome: Any) -> Any:
+    return {**dump_genome(genome), "id": None}
+
+
+def grown(seed: int, mutations: int, count: int = 1) -> list[Any]:
+    pool = pool_of(seed=seed, node_add=0.9, connection_add=0.9)
+    return [draw(pool, mutations) for _ in range(count)]
+
+
+@given(seed=st.integers(0, 99), mutations=st.integers(0, 8), count=st.integers(1, 4))
+def test_genomes_of_one_run_are_adopted_unchanged_under_new_ids(
+    seed: int, mutations: int, count: int
+) -> None:
+    given = grown(seed, mutations, count)
+    before = [dump_genome(genome) for genome in given]
+    pool = pool_of()
+    adopted = pool.adopt(given)
+    assert [without_id(genome) for genome in adopted] == [without_id(genome) for genome in given]
+    assert [genome.key for genome in adopted] == [*range(1, count + 1)]
+    assert [dump_genome(genome) for genome in given] == before
+    assert not {id(genome) for genome in adopted} & {id(genome) for genome in given}
+
+
+@given(seeds=st.lists(st.integers(0, 99), min_size=2, max_size=4), mutations=st.integers(1, 8))
+def test_different_connections_of_different_runs_get_different_numbers(
+    seeds: list[int], mutations: int
+) -> None:
+    given = [genome for seed in seeds for genome in grown(seed, mutations)]
+    pool = pool_of()
+    adopted = pool.adopt(given)
+    assert all(len(keys) == 1 for keys in innovations(adopted).values())
+    for one, other in zip(adopted, given, strict=True):
+        numbers = [gene.innovation for gene in one.connections.values()]
+        assert len(set(numbers)) == len(numbers)
+        assert np.array_equal(pool.express(one)(np.ones((1, 3))), pool.express(other)(np.ones((1, 3))))
+    assert without_id(adopted[0]) == without_id(given[0])
+
+
+def test_runs_have_the_same_number_for_different_connections() -> None:
+    runs = [genome for seed in range(5) for genome in grown(seed, 4)]
+    assert any(len(keys) > 1 for keys in innovations(runs).values())  # so that the test above tests something
+
+
+@given(seed=st.integers(0, 99), mutations=st.integers(0, 8))
+def test_later_nodes_connections_and_genomes_have_new_numbers(seed: int, mutations: int) -> None:
+    pool = pool_of(node_add=1.0, node_delete=0.0, connection_delete=0.0)
+    [adopted] = pool.adopt(grown(seed, mutations))
+    with pool.stream.swapped_in():
+        mutant = pool.mutant(adopted, 3)
+    assert mutant.key == adopted.key + 1
+    assert mutant.nodes.keys() > adopted.nodes.keys()
+    added = {gene.innovation for key, gene in mutant.connections.items() if key not in adopted.connections}
+    assert added
+    assert min(added) > max(innovations([adopted]), default=0)
+
+
+def test_a_genome_without_connections_is_adopted() -> None:
+    [genome] = grown(0, 0)
+    genome.connections.clear()
+    pool = pool_of()
+    pool.adopt([genome])
+    assert pool.tracker.global_counter == 0
+    assert pool.node_ids.value == 2
+
+
+def test_networks_require_an_input() -> None:
+    with pytest.raises(ConfigurationError, match="found 0; use the evolver genetic"):
+        pool_of(inputs=0)

@@ -67,6 +67,18 @@ class Cohort:
         self.phase = "asked"
         return list(self.genomes.values())
 
+    def check_seeds(self, count: int) -> None:
+        """Refuse a number of genomes from which the population shall start.
+
+        Raises:
+            ValueError: There are none, or more than members.
+            RuntimeError: The initial genomes were already returned.
+        """
+        if self.generation or self.phase != "new":
+            raise RuntimeError("seed() called after ask(): the initial genomes are already in use")
+        if not 1 <= count <= len(self.genomes):
+            raise ValueError(f"expected 1 to {len(self.genomes)} seeds, found {count}")
+
     def tell(self, fitness: NDArray[np.float64]) -> None:
         """Store the *fitness* of the genomes, in the order of :meth:`ask`."""
         if self.phase != "asked":

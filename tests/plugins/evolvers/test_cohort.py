@@ -12,8 +12,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from evoframe import StructureError, structure
-from evoframe_evolvers.cppn import Cohort, SavedCohort
-from evoframe_evolvers.cppn.cohort import FITNESS_LIMIT
+from evoframe_evolvers.cohort import FITNESS_LIMIT, Cohort, SavedCohort
 
 
 def genome(key: int) -> Any:
@@ -147,3 +146,22 @@ def test_a_fault_of_the_document_is_named(change: dict[str, Any], fault: str) ->
 
 def test_the_document_has_the_keys_of_a_state() -> None:
     assert {*saved(cohort_of(1))} == {field.name for field in attrs.fields(SavedCohort)}
+
+
+@pytest.mark.parametrize("count", [0, 4])
+def test_seeds_are_as_many_as_members_at_most(count: int) -> None:
+    with pytest.raises(ValueError, match=f"1 to 3 seeds, found {count}"):
+        cohort_of(1, 2, 3).check_seeds(count)
+    cohort_of(1, 2, 3).check_seeds(1)
+    cohort_of(1, 2, 3).check_seeds(3)
+
+
+def test_seeds_come_before_the_first_ask() -> None:
+    cohort = cohort_of(1, 2)
+    cohort.ask()
+    with pytest.raises(RuntimeError, match="after ask"):
+        cohort.check_seeds(1)
+    cohort.tell(np.zeros(2))
+    cohort.succeed({1: genome(1), 3: genome(3)})
+    with pytest.raises(RuntimeError, match="after ask"):
+        cohort.check_seeds(1)
