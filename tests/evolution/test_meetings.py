@@ -1,4 +1,4 @@
-"""Tests of who meets whom."""
+"""Tests of the meetings of a turn."""
 
 from __future__ import annotations
 

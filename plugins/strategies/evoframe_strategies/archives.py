@@ -109,7 +109,7 @@ class Previous(ChooseN):
 
 @attrs.frozen
 class _Generations:
-    """What a run remembers.
+    """The memory of a run.
 
     Attributes:
         members: The current generation, by which the next one is recognized.

@@ -59,7 +59,7 @@ class Collaboration:
 
     @functools.cached_property
     def observes(self) -> bool:
-        """Whether the strategy has a memory, or may ask whom individuals met."""
+        """True if the strategy has a memory, or can ask for the collaborators that individuals had."""
         return isinstance(self.strategy, SupportsMemory | SupportsEach)
 
     @property

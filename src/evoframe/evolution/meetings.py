@@ -1,4 +1,4 @@
-"""Who meets whom in a turn."""
+"""Meetings of a turn: one individual of each population."""
 
 from __future__ import annotations
 

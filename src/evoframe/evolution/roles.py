@@ -76,7 +76,7 @@ class Roles:
 
     @property
     def are_redrawn(self) -> bool:
-        """Whether individuals that meet again can get another design."""
+        """True if individuals that meet again can get another design."""
         return any(role.draw != "run" for role in self.roles)
 
     def begin_turn(self, turn: int) -> None:
