@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import copy
 import functools
+import json
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeGuard
 
@@ -108,8 +108,8 @@ class Collaboration:
         if not self.observes:
             return None
         with blaming(self.key, self._whose):
-            runs = {name: copy.deepcopy(run.state()) for name, run in self._runs.items()}
-            json_text(runs)  # fails here, so that the strategy is named
+            # Values of its own, since they are saved while the strategy already chooses for the next turn.
+            runs = json.loads(json_text({name: run.state() for name, run in self._runs.items()}))
         met = {
             name: [[key, list(collaborators)] for key, collaborators in met.items()]
             for name, met in self._met.items()
