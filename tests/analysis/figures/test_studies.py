@@ -176,7 +176,7 @@ def test_the_best_of_each_view_are_compared_too(data: StudyData) -> None:
         attrs.evolve(
             row,
             settings={**row.settings, "collaboration.n": "3"},
-            score=row.score + (row.settings["aggregator"] == "hm"),
+            score=row.score + (row.settings["aggregator"] == "am"),
         )
         for row in data.rows
     ]
@@ -184,4 +184,4 @@ def test_the_best_of_each_view_are_compared_too(data: StudyData) -> None:
     *views, best = both.views("score")
     assert [view.title for view in views] == ["n = 2", "n = 3"]
     assert best.title == "best of each"
-    assert list(best.groups) == ["AM (n = 2)", "HM (n = 3)"]  # the best of each view
+    assert list(best.groups) == ["HM (n = 2)", "AM (n = 3)"]  # the best of each view
