@@ -10,6 +10,7 @@ PARALLEL := --numprocesses auto --dist worksteal
 
 LOWEST := $(VENV)-lowest
 VERSIONLESS := tests/survival tests/cli/test_streams.py tests/cli/test_signals.py # depend on no version
+VERSIONLESS += tests/architecture/test_third_party_runs.py tests/experiment/test_functions.py
 LONG   := interpreters kills latex hunt
 
 .PHONY: run test long lint types imports unit lowest browser sanitize fuzz interpreters kills latex hunt clean
