@@ -181,7 +181,7 @@ class World:
         return Member(self._next_id, None, species=species, genome_size=int(self.rng.integers(1, 4)))
 
     def _evaluate(self, population: int) -> None:
-        share = self.rng.choice((0.0, 0.3, 0.9))  # of members with a diverged simulation
+        share = self.rng.choice((0.0, 0.5, 0.9))  # of members with a diverged simulation
         self._members[population] = [
             attrs.evolve(
                 member,

@@ -34,7 +34,7 @@ from evoframe.testing.laws import (
 __all__ = ["StrategyRunLaws"]
 
 _SEEDS = st.integers(0, 2**32 - 1)
-_FEW = 15  # examples of a law that plays several turns in each
+_FEW = 20  # examples of a law that plays several turns in each
 
 
 class StrategyRunLaws(ComponentContract[CollaborationStrategy]):
