@@ -10,6 +10,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+import evoframe
 from evoframe import (
     MORPHOLOGY,
     ConfigurationError,
@@ -17,7 +18,6 @@ from evoframe import (
     Simulator,
     SupportsPublished,
     SupportsReading,
-    load_run,
 )
 
 __all__ = ["Champion", "File", "Published"]
@@ -109,7 +109,7 @@ class Champion(_Fixed):
         """
         if not self.run:
             raise ConfigurationError("no run is given; set the option run to its directory")
-        return _given([("champion", load_run(self.run).champion().design)], "", self.roles, self.run)
+        return _given([("champion", evoframe.load_run(self.run).champion().design)], "", self.roles, self.run)
 
 
 @attrs.frozen(eq=False)
