@@ -10,7 +10,6 @@ from typing import Any
 import attrs
 import numpy as np
 
-import evoframe
 from evoframe import (
     MORPHOLOGY,
     ConfigurationError,
@@ -107,9 +106,11 @@ class Champion(_Fixed):
             ConfigurationError: No run is given, or its champion lacks a role.
             InputError: The run cannot be read.
         """
+        from evoframe import load_run  # noqa: PLC0415 - slow to import, and needed here only
+
         if not self.run:
             raise ConfigurationError("no run is given; set the option run to its directory")
-        return _given([("champion", evoframe.load_run(self.run).champion().design)], "", self.roles, self.run)
+        return _given([("champion", load_run(self.run).champion().design)], "", self.roles, self.run)
 
 
 @attrs.frozen(eq=False)
