@@ -35,7 +35,7 @@ def assemble(config: RunConfig, genomes: Mapping[str, Sequence[Any]] = _NO_GENOM
     Raises:
         ConfigurationError: A component cannot start, or an evolver cannot start with given genomes.
     """
-    populations = tuple(_population(config, name, f"population/{name}") for name in config.populations)
+    populations = tuple(population_of(config, name) for name in config.populations)
     drafts = _drafts(config)
     for population in itertools.chain(populations, *drafts.populations):
         if population.name in genomes:

@@ -148,9 +148,9 @@ class Coevolution:
         for population in self.populations:
             population.restore(state[f"population/{population.name}"])
         for collaboration in self.collaborations:
-            if collaboration.state() is not None:
+            if collaboration.observes:
                 collaboration.restore(state[_part(collaboration)])
-        if self.roles.state() is not None:
+        if self.roles.roles:
             self.roles.restore(state["roles"])
         self.roles.begin_turn(self.turn)
         self._ended = self._state_of_turn()

@@ -16,7 +16,7 @@ from evoframe.errors import ComponentError
 from evoframe.evolution.decoding import Meeting
 from evoframe.evolution.population import Population
 
-__all__ = ["Judge", "scored_meetings"]
+__all__ = ["Judge", "rows_of", "scored_meetings"]
 
 Fold: TypeAlias = Callable[[Scores], float]
 
@@ -54,11 +54,10 @@ class Judge:
             first: Whether this is the initial turn, in which the fitness is the arithmetic mean of all
                 scores, unless the aggregator considers whole turns.
         """
-        rows = _rows(population, column, scores, self._read)
+        rows = rows_of(population, column, scores, self._read)
         if isinstance(self.aggregator, Credit):
             return self._credited(self.aggregator, population, column, rows, seen())
-        fold = statistics.fmean if first else self.aggregator.aggregate
-        return [self._folded(row, fold, population.called(i)) for i, row in enumerate(rows)]
+        return self._folded_all(rows, population, first=first)
 
     def measure(
         self, population: Population, column: int, scores: Mapping[Meeting, Score], name: str, *, first: bool
@@ -67,10 +66,8 @@ class Judge:
 
         An aggregator that considers whole turns does not apply to measures: they are averaged.
         """
-        rows = _rows(population, column, scores, lambda score: score.measures.get(name))
-        mean: Fold = statistics.fmean
-        fold = mean if first or isinstance(self.aggregator, Credit) else self.aggregator.aggregate
-        return [self._folded(row, fold, population.called(i)) for i, row in enumerate(rows)]
+        rows = rows_of(population, column, scores, lambda score: score.measures.get(name))
+        return self._folded_all(rows, population, first=first)
 
     def floor(self, scores: Mapping[Meeting, Score]) -> float | None:
         """Return the worst score of a turn, or ``None`` if all simulations diverged."""
@@ -79,6 +76,14 @@ class Judge:
 
     def _read(self, score: Score) -> float | None:
         return None if score.value is None else self.sign * score.value
+
+    def _folded_all(
+        self, rows: Sequence[Sequence[float | None]], population: Population, *, first: bool
+    ) -> list[float | None]:
+        """Return each row aggregated; averaged in the initial turn, and for a credit."""
+        mean: Fold = statistics.fmean
+        fold = mean if first or isinstance(self.aggregator, Credit) else self.aggregator.aggregate
+        return [self._folded(row, fold, population.called(i)) for i, row in enumerate(rows)]
 
     def _folded(self, row: Sequence[float | None], fold: Fold, individual: str) -> float | None:
         values = [value for value in row if value is not None]
@@ -113,7 +118,7 @@ class Judge:
         return fitness
 
 
-def _rows(
+def rows_of(
     population: Population,
     column: int,
     scores: Mapping[Meeting, Score],

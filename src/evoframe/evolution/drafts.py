@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import attrs
 
 from evoframe.contract import Score
+from evoframe.evolution.credit import rows_of
 from evoframe.evolution.decoding import Meeting, decoded_designs
 from evoframe.evolution.evaluation import Evaluator
 from evoframe.evolution.meetings import first_meetings
@@ -64,9 +65,7 @@ def _ranks(
     population: Population, column: int, scores: Mapping[Meeting, Score], sign: float
 ) -> list[tuple[bool, float]]:
     """Return for each individual whether it diverged, and its negated mean score."""
-    rows: list[list[float | None]] = [[] for _ in population.members]
-    for meeting, score in scores.items():
-        rows[meeting[column]].append(score.value)
+    rows = rows_of(population, column, scores, lambda score: score.value)
     values = [[value for value in row if value is not None] for row in rows]
     means = [statistics.fmean(row) if row else 0.0 for row in values]
     return [(len(kept) < len(row), -sign * mean) for row, kept, mean in zip(rows, values, means, strict=True)]
